@@ -55,11 +55,11 @@ struct Findings {
 
 class Probe : public scene::Component {
  public:
-  // Names of all that it may find: what an experiment's `metrics`, plots and gates may name.
+  // Names of all figures that the probe may find: an experiment's `metrics`, plots and gates may use these names.
   virtual std::vector<std::string> figures() const = 0;
-  // Those of them that depend on how fast the machine is, beside figures that are named after a unit of time (probes.h).
+  // The figures that depend on the machine's speed, except figures named after a unit of time (probes.h).
   virtual std::vector<std::string> speeds() const { return {}; }
-  // Throws Error for an input that is no good, Unavailable for a device that is not there.
+  // Throws Error for invalid input, Unavailable for a missing device.
   virtual Findings run(const ProbeInput&, const scene::Settings&, const scene::Execution&) const = 0;
 };
 

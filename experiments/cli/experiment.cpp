@@ -52,7 +52,7 @@ Folders folders_of(const ExperimentOptions& options) {
   return {project_root(options.root), options.results, options.cache};
 }
 
-// As a user would type it.
+// The path as a user would type it.
 std::string shown(const Folders& folders, const std::string& name) {
   return ((folders.default_results() ? "results" : folders.results) / name).string();
 }
@@ -84,7 +84,7 @@ std::vector<Experiment> read_and_check(const ExperimentOptions& options, const F
     check_interrupted();
     try {
       RunOptions check{folders, resume, options.threads, false};
-      // Of all experiments they would take a third of the time, and the run itself tells what they would.
+      // Trials of all experiments would take a third of the run's time, and the run itself reports the same errors.
       check.trials = !options.in_tests && !options.names.empty();
       check_experiment(e, check);
     } catch (const Error& error) {
@@ -295,7 +295,7 @@ void add_results(CLI::App* c, ExperimentOptions& options) {
       ->type_name("FOLDER");
 }
 
-// Of what runs experiments.
+// Adds the options of commands that run experiments.
 void add_run(Commands& commands, CLI::App* c, ExperimentOptions& options) {
   add_selection(c, options);
   add_results(c, options);

@@ -31,7 +31,7 @@ struct CommittedReference {
 std::filesystem::path committed_file(const std::filesystem::path& folder, const scene::Scene&, const scene::Renderer&,
                                      const scene::Settings&, const std::string& layer);
 
-// Those of the experiments given, each once. Loads their scenes.
+// The references that these experiments ask for, each once. Loads the experiments' scenes.
 std::vector<CommittedReference> committed_references(const std::vector<Experiment>&);
 
 bool is_committed(const std::filesystem::path& file);

@@ -41,7 +41,7 @@ bool is_text_of(const fs::path& file, const std::string& text) {
   return in && std::string(std::istreambuf_iterator<char>(in), {}) == text;
 }
 
-// Of an experiment that is run alone.
+// Progress of an experiment that is run alone.
 std::unique_ptr<RunProgress> progress_of(const Experiment& e, const RunOptions& options) {
   auto streams = RunProgress::standard_streams(false);
   if (!options.talk) streams.lines = nullptr;

@@ -15,7 +15,7 @@ struct ReferenceInfo {
   bool cached = false;
   double exposure = 0;
   std::string samples;  // that a Monte Carlo reference has: a cache may hold more than were asked for
-  // Of a committed film: its file below the project's root, the program that made it, and what the file keeps of it.
+  // For a committed film: its file below the project's root, the program that made it, and what the file keeps of it.
   std::string committed = {}, program = {}, kept = {};
 };
 

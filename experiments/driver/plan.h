@@ -45,7 +45,7 @@ PlannedScene plan_scene(const Experiment&, const SceneCase&, std::shared_ptr<con
 // What the file says of a row, and the content of its scene.
 Row row_of(const SceneCase&, const MethodCase&, const scene::Settings&, const std::string& scene_hash);
 
-// Of a row whose names, settings and hashes are known.
+// Key of a row whose names, settings and hashes are known.
 std::string row_key(const Experiment&, const MethodCase&, const scene::Component&, const Row&);
 
 // Pixels of the view whose ray sees more than 1e-3 of the media, from the media themselves.

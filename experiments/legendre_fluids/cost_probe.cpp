@@ -21,7 +21,7 @@ using scene::TensorShape;
 
 const std::vector<int> sizes = {4, 6, 8, 10, 12, 16, 20, 24, 32};
 
-// Of this thread [s].
+// Processor time of this thread [s].
 double processor_time() {
   timespec t;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
@@ -37,7 +37,8 @@ Array noise(int size, unsigned seed) {
 // The matrix M_G of equation 10 times F, from the triple products that are not 0.
 class SparseProduct {
  public:
-  // Of all products of three polynomials along an axis; in three dimensions of three triples.
+  // Share of zeros among all products of three polynomials along an axis; in three dimensions, among
+  // products of three triples.
   double share_of_zeros() const { return 1 - double(entries_.size()) / std::pow(double(n_), 3); }
   double share_of_zeros_3d() const { return 1 - std::pow(1 - share_of_zeros(), 3); }
 
@@ -107,7 +108,7 @@ std::function<void()> part_of(const std::string& part, int n) {
   return [=] { Eigen::EigenSolver<MatrixXd> solver(*m); };
 }
 
-// Of log y over log x, least squares.
+// Slope of log y over log x, by least squares.
 double slope(const std::vector<double>& x, const std::vector<double>& y) {
   double sx = 0, sy = 0, sxx = 0, sxy = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {

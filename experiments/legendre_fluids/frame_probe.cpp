@@ -75,7 +75,7 @@ class Clock {
   std::map<std::string, double> now_;
 };
 
-// Of the linear systems for light among stages.
+// Time of the stages that solve linear systems for light.
 double seconds_of_systems(const std::vector<scene::StageTime>& times) {
   double sum = 0;
   for (const scene::StageTime& time : times)
