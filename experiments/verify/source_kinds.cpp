@@ -58,8 +58,8 @@ std::vector<double> vector_of(const std::vector<double>& lit) {
   const double scale = std::sqrt(4 * pi / 3);
   return {-scale * lit[3], -scale * lit[1], scale * lit[2]};
 }
+
 // The diffusion system, row by row, as CentreSourcesOnDevice assembles it on the device.
-// The diffusion system, row by row. On the device as CentreSourcesOnDevice has it.
 struct System {
   std::vector<double> matrix, right;
 };

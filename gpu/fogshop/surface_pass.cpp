@@ -78,7 +78,7 @@ void SurfaceShading::upload_tables(const scene::Scene& scene, const FogOnDevice&
       harmonics && std::any_of(lighting_.reflectances->tables().begin(), lighting_.reflectances->tables().end(),
                                [](const auto& table) { return table.has_value(); });
   const bool turned = tabulated && (environment || transfer);
-  // As many rows of invocations as shared memory has room for (harmonics.glsl, transfer.glsl).
+  // The work group has as many rows of invocations as fit into shared memory (harmonics.glsl, transfer.glsl).
   const int order = model_.options.sh_order, rows = (turned ? 2 * (2 * order - 1) : 0) + order;
   const int held = 4 * (3 * rows + (transfer ? (tabulated ? 4 : 2) * order * order : 0));  // [B]
   int height = 8;

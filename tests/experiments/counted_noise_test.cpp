@@ -20,8 +20,8 @@ constexpr double off = 0.01;  // relative, of the image beside its noise
 
 double biased(int x, int y, int c) { return gradient(x, y, c) * (1 + ((x + y) % 2 ? 1 : -0.5) * off); }
 
-// The same grey noise in all channels of a pixel, from four samples, as a path tracer stores it: mean, se and n. Gamma
-// distributed as in noisy().
+// A film with grey noise, equal in all channels of a pixel, from four samples, as a path tracer stores it: mean, se and
+// n. The noise is gamma distributed as in noisy().
 Film four_samples(const Value& value, double sigma, unsigned seed) {
   Film film(width, height);
   std::mt19937_64 random(seed);

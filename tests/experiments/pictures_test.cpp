@@ -9,7 +9,7 @@ namespace pictures_test {
 using namespace airlight::experiments;
 using airlight::scene::Film;
 
-// Of the luminances 0 to 100 the 99 % quantile is 99: shown as 0.8.
+// For the luminances 0 to 100 the 99 % quantile is 99: shown as 0.8.
 TEST_CASE("a picture's exposure shows its 99 % quantile as 0.8", "[driver]") {
   Film film(101, 1);
   auto& mean = film.add("mean");

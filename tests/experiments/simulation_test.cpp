@@ -167,7 +167,7 @@ blob = [ { center = [0.6, 1, 0.5], width = 0.4, density = 1 } ]
         "s.toml", folder.path().string());
     const auto& shown = std::get<scene::LegendrePointer>(scene.media.at(0).field)->coefficients();
     const scene::DensityField medium = flow->medium(name != "two");
-    // Those below 1e-20 are left out.
+    // The files leave out coefficients below 1e-20.
     CHECK((shown - std::get<scene::LegendrePointer>(medium)->coefficients()).cwiseAbs().maxCoeff() < 1e-20);
   }
 

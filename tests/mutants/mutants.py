@@ -122,7 +122,7 @@ class Builder:
 
 
 def named(test):
-    """As Catch2 takes it: a comma would begin another name."""
+    """The test's name, escaped for Catch2: a comma would begin another name."""
     return test.replace(",", "\\,").replace("[", "\\[")
 
 

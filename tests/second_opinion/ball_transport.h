@@ -17,10 +17,10 @@ struct BallLight {
 class BallTransport {
  public:
   explicit BallTransport(const BallLight&);
-  // At that distance from the centre: half the integral over the cosine to the radius of P_l times radiance.
+  // At this distance from the centre: half the integral of P_l times radiance over the cosine to the radius.
   double moment(int l, double radius) const;
-  double reduced_moment(int l, double radius) const;  // of light that nothing has scattered
-  // Of a ray that passes the centre at a distance, where it leaves the ball.
+  double reduced_moment(int l, double radius) const;  // light that was not scattered
+  // Radiance and transmittance of a ray where it leaves the ball. `impact`: distance at which it passes the centre.
   double exit_radiance(double impact) const;
   double exit_transmittance(double impact) const;
 

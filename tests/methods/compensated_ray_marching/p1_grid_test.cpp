@@ -64,7 +64,8 @@ TEST_CASE("diffusion on a grid: slabs, to second order", "[compensated_ray_march
   }
 }
 
-// Of a source that has a direction and no mean the solution is odd: C sinh(s (z - T/2)), C = kappa e J1 / (sinh(sT/2)/2 + kappa s cosh(sT/2)).
+// For a source with a direction and without a mean the solution is odd: C sinh(s (z - T/2)), C = kappa e J1 /
+// (sinh(sT/2)/2 + kappa s cosh(sT/2)).
 TEST_CASE("diffusion on a grid: a source with a direction", "[compensated_ray_marching]") {
   const Diffusion d{2, 0.9, 0.4};
   const double thickness = 3, along = 0.7, s = d.sigma_eff(), half = s * thickness / 2;

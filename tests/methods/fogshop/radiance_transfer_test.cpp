@@ -165,7 +165,7 @@ TEST_CASE("a convex mesh does not shadow itself", "[fogshop]") {
     for (int n = 1; n < 25; ++n) CHECK(v[n] == 0);
     CHECK(transfer.visibility(scene, {middle, -normal, 0, t}).empty());  // seen from inside
   }
-  // The same picture, then, with and without.
+  // So the pictures with and without radiance transfer are equal.
   const scene::Film plain = render(scene, {{"reflectance", "npsfT"}});
   const scene::Film shadowed = render(scene, {{"reflectance", "npsfT"}, {"prt", "true"}});
   double brightest = 0;

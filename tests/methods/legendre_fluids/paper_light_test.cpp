@@ -26,7 +26,8 @@ Given paper(const std::string& closure, int n, Given more = {}) {
   return more;
 }
 
-// Of the image, mean of two densities of 4^3 coefficients, or n x n x 1 in a scene that is the same for all z.
+// Relative error of the image: mean over two densities of 4^3 coefficients, or of n x n x 1 in a scene
+// that does not depend on z.
 double error_of(const Given& settings, double depth, const scene::TensorShape& shape, const Vec3& light,
                 const Vec3& view) {
   double sum = 0;

@@ -171,7 +171,7 @@ TEST_CASE("forced collisions before surfaces change the noise and nothing else",
       }
 }
 
-// Of 2^20 analog paths some 300 scatter twice: enough for a normal distribution where no light is close.
+// About 300 of 2^20 analog paths scatter twice: enough for a normal distribution if no light is close.
 TEST_CASE("the second scattering after a forced one", "[path_tracer]") {
   const double limit = threshold(1e-3, 4 * 3);
   int index = 700;

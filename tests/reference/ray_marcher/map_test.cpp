@@ -32,9 +32,9 @@ std::vector<std::string> reasons(const scene::Renderer& renderer, const scene::S
 
 }  // namespace
 
-// Of 64^2 texels and 96 steps. The bounds are one and a half times the greatest error of all these scenes, of the media's
-// light or of that of surfaces behind them: a turned grid cut off by a box, smoke under the sky. Homogeneous media need
-// no map and have exact shadows.
+// Maps have 64^2 texels and 96 steps. The bounds are one and a half times the greatest error over all these scenes, for
+// light from media and from surfaces behind them. The greatest errors are those of a rotated grid cut off by a box, and
+// of smoke under the sky. Homogeneous media need no map and have exact shadows.
 TEST_CASE("ray marcher: pictures with maps are near those with exact shadows", "[ray_marcher][light_map]") {
   const std::map<std::string, double> bounds = {{"slices", 0.016}, {"avsm", 0.066}, {"fourier", 0.045}, {"beer", 0.4}};
   for (const auto& [name, scene] : assorted_scenes()) {

@@ -112,7 +112,7 @@ def profile_value(profile, z):
 
 
 def depth(v, c, level=0, part=(0, 1)):
-    """Of the coefficients {(i, j): value} with cells 2^level times as large, over a part of the segment."""
+    """Optical depth of coefficients {(i, j): value} with cells 2^level times as large, over a part of the segment."""
     a, b = [[mpf(x) for x in v[k]] for k in 'AB']
     cell = mpf(v['cell']) * 2**level
     start = [(a[k] - mpf(v['origin'][k])) / cell for k in (0, 1)]
