@@ -1,6 +1,6 @@
-// What a camera sees in front of or behind a medium without being part of the world: a photograph with its depth, snow flakes. Each of
-// its pixels is a radiance at a depth, and ends the camera rays through it. It is not lit, casts no shadow, and nothing but the scene's
-// own camera sees it (camera_end of scene.h).
+// Pictures that a camera sees in front of or behind a medium, without being part of the world: a photograph with its
+// depth, snow flakes. Each pixel is a radiance at a depth, and ends the camera rays through it. A backdrop is not lit,
+// casts no shadow, and only the scene's own camera sees it (camera_end of scene.h).
 #pragma once
 #include <optional>
 #include <string>

@@ -1,4 +1,4 @@
-// What is rendered: an immutable value. One camera, lights, media, surfaces.
+// A scene to render, an immutable value: one camera, lights, media, surfaces.
 #pragma once
 #include <map>
 #include <memory>
@@ -50,7 +50,7 @@ inline bool same_surfaces(const Scene& a, const Scene& b) {
          (a.geometry == b.geometry || (!a.surface_hash.empty() && a.surface_hash == b.surface_hash));
 }
 
-// What ends a ray: a surface hit, a light ball, a backdrop, or nothing (t infinite).
+// The end of a ray: a surface hit, a light ball, a backdrop, or nothing (t infinite).
 struct RayEnd {
   double t = infinity;
   std::optional<Hit> hit;   // set when a surface is first

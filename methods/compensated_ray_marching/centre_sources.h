@@ -10,8 +10,9 @@
 
 namespace airlight::compensated_ray_marching {
 
-// Why multiple scattering at the centres is left out; empty where it is not. What is scattered again is no more than the albedo times what
-// is lost on a way along the axes of all Gaussians, one after another: below the tolerance it is not looked for.
+// Why multiple scattering at the centres is left out; empty if it is not. Its upper bound is the albedo
+// times the light lost on a path along the axes of all Gaussians, one after another. It is not computed
+// if the bound is below the tolerance.
 std::string single_only(const scene::GaussianSum&, const scene::Medium&, const Options&);
 
 class CentreSources {

@@ -3,8 +3,9 @@
 //
 //   w.grad L = extinction (J - L),   J = J_ss + J_ms,   J_ms,lm = albedo p_l M_lm,   M_lm = integral of L y_lm over the sphere
 //
-// Propagation directions throughout. Each direction is swept plane by plane along the axis that it crosses fastest; between two planes the
-// source is a parabola in the optical depth. What enters by the faces is 0 (the reduced light is in J_ss), or the same everywhere.
+// All directions are propagation directions. Each direction is swept plane by plane along the axis that it crosses
+// fastest; between two planes the source is a parabola in the optical depth. The inflow through the faces is 0 (the
+// reduced light is in J_ss), or constant.
 #pragma once
 #include <Eigen/Core>
 #include <array>

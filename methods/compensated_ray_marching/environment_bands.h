@@ -1,4 +1,5 @@
-// Environments in bands of spherical harmonics. What costs, a map's projection, is kept where the map is the same, however it is turned.
+// Environments in bands of spherical harmonics. A map's projection is expensive: it is cached for each
+// map, for any rotation.
 #pragma once
 #include <functional>
 #include <memory>

@@ -50,7 +50,8 @@ OrdinateOptions ordinate_options(const Options& options) {
   return ordinates;
 }
 
-// What a direction's light of radiance 1 adds to each coefficient, but for albedo and its power; a row for each direction.
+// Contribution of light of radiance 1 from a direction to each coefficient, without albedo and power; a
+// row for each direction.
 Eigen::MatrixXd scattered_by_direction(const std::vector<Vec3>& toward, int order, const std::vector<double>& moments) {
   const Eigen::Index bands = order * order;
   Eigen::MatrixXd scatters(Eigen::Index(toward.size()), bands);
@@ -141,8 +142,8 @@ void LitGrid::find_channels(const OrdinateOptions& ordinates) {
   }
 }
 
-// What the smoke leaves of an even light at the nodes; the deepest column [m]. From the directions that an environment's light is scattered
-// once from, where there is one, else from the ordinates'. Surfaces are left out.
+// Transmitted share of an even light at the nodes; returns the deepest column [m]. Uses the directions of single
+// scattering from an environment, if there is one, else those of the ordinates. Surfaces are left out.
 double LitGrid::look_around(const IncomingLight& light, const OrdinateOptions& options,
                             const scene::Execution& execution) {
   const bool known = fixed_ > 0 && !scene_.geometry;

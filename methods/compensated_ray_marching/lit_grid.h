@@ -16,8 +16,9 @@ namespace airlight::compensated_ray_marching {
 
 class LitGrid {
  public:
-  // What does not depend on the light: nodes, their mean densities, and depths towards the light's fixed directions. A direction that
-  // surfaces block has no light. The scene outlives this. Throws NotSupported where cells are too deep however small.
+  // Computes everything that does not depend on the light: nodes, their mean densities, and depths towards the light's
+  // fixed directions. A direction that surfaces block has no light. The scene must outlive this object. Throws
+  // NotSupported if cells are too deep at any size.
   LitGrid(const scene::Scene&, const scene::Medium&, const Options&, const IncomingLight&, const scene::Execution&);
 
   // Sets where light comes from. Computes depths towards new directional lights; returns whether there were any.
@@ -30,9 +31,10 @@ class LitGrid {
   void begin_with(const Solution&, bool grey);
   Solution solution() const;
 
-  // Logarithm of the source radiance [W/m^2/sr] towards the camera at every node: of single scattering with as many bands of the phase
-  // function as light has, of the rest with `order`. What is below 1e-6 of the greatest counts as that. Light dies away exponentially in
-  // smoke, so that logarithms are what is interpolated: errors between nodes are 1.2 times (cells 0.4 deep) to 1.6 times smaller (1.6).
+  // Logarithm of the source radiance [W/m^2/sr] towards the camera at every node. Single scattering uses as many bands
+  // of the phase function as the light has, the rest uses `order`. Radiances below 1e-6 of the greatest are raised to
+  // that value. Light decays exponentially in smoke, therefore logarithms are interpolated: errors between nodes are
+  // 1.2 times (cells 0.4 deep) to 1.6 times smaller (1.6).
   std::vector<Rgb> towards(const scene::Camera&, const scene::Execution&) const;
 
   const NodeGrid& grid() const { return grid_; }

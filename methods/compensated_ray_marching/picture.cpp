@@ -202,7 +202,8 @@ std::vector<scene::Stage> PreparedPicture::stages() const {
        ambient_kept() ? "ambient_in_scatter times 1 - transmittance" : "ambient_in_scatter is zero, or no medium"}};
 }
 
-// What the ray ends on sends back, without the smoke in between. Light that the smoke scatters onto surfaces is left out.
+// Radiance from the end of the ray, without the smoke in between. Light that the smoke scatters onto
+// surfaces is left out.
 Rgb PreparedPicture::behind(const Ray& ray, const scene::RayEnd& end) const {
   if (!end.hit) return scene::background(*scene_, end, ray.direction);
   const scene::Hit& hit = *end.hit;
@@ -260,7 +261,7 @@ scene::Pixel PreparedPicture::pixel(const Ray& ray, const View& view, const Gaus
         source = voxel.source;
       else if (of_gaussians >= smoke_->least_density())
         source = (weighted[std::size_t(k)] / of_gaussians).max(0);
-      // What a slice shows of its source is what it takes away, by exact weights.
+      // With exact weights a slice shows as much of its source as it absorbs.
       p.airlight += p.transmittance * source * (exact ? lost : seen(depth, slope, options_.weight));
       p.transmittance *= 1 - lost;
     }

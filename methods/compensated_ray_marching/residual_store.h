@@ -1,4 +1,5 @@
-// What Gaussians leave of fitted smoke, as it is looked up between samples while rays are marched: Zhou et al. 2008, sections 5.2 and 5.6.
+// The residual of fitted smoke after subtracting its Gaussians, for lookups between samples while rays are marched:
+// Zhou et al. 2008, sections 5.2 and 5.6.
 #pragma once
 #include <variant>
 

@@ -12,7 +12,7 @@
 
 namespace airlight::compensated_ray_marching {
 
-// What an environment sends: in harmonics of lookup directions, or as radiance from a direction (towards the light).
+// Light of an environment: in harmonics of lookup directions, or as radiance from a direction (towards the light).
 struct SourceLight {
   std::vector<Rgb> harmonics;
   std::function<Rgb(const Vec3&)> radiance;

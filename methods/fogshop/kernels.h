@@ -34,7 +34,7 @@ struct Line {
 // From one point to another; any direction if they coincide.
 Line line_between(const Point3& from, const Point3& to);
 
-// What a line meets: for each Gaussian whose sphere the line crosses, its Eq. 31 along the line,
+// Crossings of a line with Gaussians: for each Gaussian whose sphere the line crosses, its Eq. 31 along the line,
 // integral over [0, t] = depth (erf(a (t - middle)) + erf(a middle)). Arrays have room for whole vectors.
 struct Crossings {
   int count = 0;

@@ -21,7 +21,7 @@ namespace airlight::fogshop {
 inline constexpr double most_transfer_vertices = 1e6;
 double mesh_vertices(const scene::Scene&);
 
-// What of a material reflects as Lambert's does; of a table nothing.
+// The Lambertian part of a material; 0 for a table.
 Rgb diffuse_albedo(const scene::Material&);
 
 class RadianceTransfer {

@@ -1,4 +1,4 @@
-// What a scene needs of the method, and what it does not.
+// Decides which stages of the method a scene needs.
 #pragma once
 #include "methods/fogshop/model.h"
 

@@ -108,7 +108,7 @@ void object_to_sides(const FlowProblem& p, std::vector<std::string>& reasons) {
       }
 }
 
-// What goes through the sides, and what it brings; nothing where nothing does.
+// Flow through the sides, and the quantities that it carries in; nothing if no air comes in.
 std::optional<Wind> wind_through(const std::shared_ptr<const FlowProblem>& problem, const ReferenceBox& box) {
   if (!air_comes_in(*problem)) return {};
   Wind wind;
@@ -149,7 +149,7 @@ void object_to_albedo(const FlowProblem& problem, std::vector<std::string>& reas
   if (problem.diffusivity > 0) reasons.push_back(mixing + "diffusivity");
 }
 
-// What the paper's variants do not have.
+// Reasons why the paper's variants do not support the problem.
 void object_to_paper(const FlowProblem& problem, const Settings& settings, std::vector<std::string>& reasons) {
   const std::string& variant = settings.text("variant");
   const FlowOptions o = read_flow_options(settings);

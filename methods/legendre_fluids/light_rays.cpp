@@ -49,7 +49,7 @@ struct LightRays::Walk {
     series.sources = lit.media.size() == 1 ? 1 : 3;
   }
 
-  // What the sum is in: with one medium its density alone, and colours come last.
+  // Unit of the sum: with one medium its density alone, and colours are multiplied at the end.
   Rgb unit() const {
     const Rgb irradiance = rays.media_.lights[light].irradiance;
     return source.size() == 1 ? Rgb(irradiance * source[0]) : irradiance;

@@ -17,7 +17,7 @@ struct PaperOptions {
 struct PaperMedium {
   const scene::Medium* medium = nullptr;
   scene::LegendrePointer density;  // within the medium's region; null where nothing extinguishes
-  // What scatters of it, by channel: the sum of albedo times density; null: the medium's albedo times the density.
+  // Scattering density, by channel: the sum of albedo times density; null: the medium's albedo times the density.
   std::array<scene::LegendrePointer, 3> scattering;
   // Channels that scatter alike, but for a factor where there is one albedo.
   bool alike(std::size_t channel, std::size_t other) const;

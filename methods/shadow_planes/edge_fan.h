@@ -1,8 +1,9 @@
 // Which silhouette edges a ray may cross, by the angle around a line through the light. Not in the paper.
 //
-// All rays from a camera, and all parallel rays, lie with the light in planes through one line: that from the light to
-// the camera, or along the rays. What shades a point of a ray lies in the same half of such a plane. So an edge is met
-// by rays whose angle around the line is between those of its ends, and is kept in a few of the sectors of that size.
+// All rays from a camera, and all parallel rays, lie with the light in planes through one line: the line from the light
+// to the camera, or along the rays. An occluder that shades a point of a ray lies in the same half of such a plane. So
+// an edge is met only by rays whose angle around the line is between those of the edge's ends, and is kept in a few of
+// the sectors of that size.
 #pragma once
 #include <vector>
 

@@ -9,7 +9,7 @@
 namespace airlight::shadow_planes {
 
 struct Options {
-  // What integrates the airlight of a lit part of a ray: the mapped rule, or the paper's polynomial.
+  // Evaluator of the airlight of a lit part of a ray: the mapped rule, or the paper's polynomial.
   enum class Evaluator { rule, polynomial };
   Evaluator evaluator = Evaluator::rule;
   int nodes = 64;      // of the rule

@@ -31,7 +31,7 @@ struct Tally {
   StageSeconds seconds;
 };
 
-// What is computed once per picture.
+// Values that are computed once per picture.
 struct Frame {
   View view;
   const std::vector<ShadowVolumes>& shadows;  // by light; empty: nothing casts shadows

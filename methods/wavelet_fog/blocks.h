@@ -1,5 +1,5 @@
-// What is known of blocks of 2^l x 2^l cells: whether anything is there at all, and how far the coarser grid is off. Rays
-// pass empty blocks at once and read coarse grids where the error allows.
+// Bounds for blocks of 2^l x 2^l cells: whether a block is empty, and the error of the coarser grid. Rays pass empty
+// blocks at once and read coarse grids where the error allows.
 #pragma once
 #include <vector>
 

@@ -9,7 +9,7 @@
 
 namespace airlight::wavelet_fog {
 
-// What coarse grids are made of.
+// How coarse grids are made.
 enum class Coarse {
   wavelet,     // the family's analysis: of any sign, as the paper's
   clamped,     // the same, negative values taken as 0 and the sum restored: a copy that can be rendered alone
@@ -38,7 +38,7 @@ void require_share(double mu);
 // d_max of detail m: length mu^m; mu^0 = 1 also for mu = 0.
 double reach_of(int m, double length, double mu);
 
-// What a ray read.
+// Counts of a ray's reads.
 struct Visits {
   long cells = 0, coefficients = 0, lookups = 0;
 };

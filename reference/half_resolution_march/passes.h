@@ -9,7 +9,7 @@
 
 namespace airlight::half_resolution_march {
 
-// What is prepared once for a scene.
+// Values that are prepared once for a scene.
 struct Plan {
   std::shared_ptr<const scene::Scene> scene;
   Options options;

@@ -164,8 +164,8 @@ void LightMap::march(const Densities& densities, int j, int begin, int end, Row&
   }
 }
 
-// What interpolation reads beside the outermost texels: the octahedron's edges meet themselves, their halves exchanged;
-// other maps end there.
+// Sets the border that interpolation reads around the outermost texels. The octahedron's edges meet themselves, with
+// their halves exchanged; other maps end there.
 void LightMap::make_border() {
   const int size = options_.size, floats = floats_per_texel(options_);
   const bool whole = projection_.whole_sphere();

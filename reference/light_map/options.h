@@ -1,4 +1,4 @@
-// What a user can set on a map of the light.
+// Settings of a map of the light.
 #pragma once
 #include <string>
 

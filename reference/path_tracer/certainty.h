@@ -1,4 +1,4 @@
-// What a picture may claim where its samples brought no light: nothing, unless no light can come there at all.
+// Error bounds for pictures whose samples brought no light: the error is 0 only if no light can come there at all.
 #pragma once
 #include "reference/path_tracer/world.h"
 #include "scene/renderer.h"

@@ -44,7 +44,7 @@ struct Segment {
   Flight flight;  // how collisions on it are drawn
 };
 
-// What is the same for every path along one camera ray: computed once for a pixel's centre.
+// Values shared by every path along one camera ray: computed once for a pixel's centre.
 struct CameraRay {
   Segment segment;
   Rgb background;  // radiance seen through the medium, where no surface ends the ray

@@ -22,7 +22,7 @@ struct Frame {
   Vec3 vector(const Vec3& v) const;
 };
 
-// What does not depend on where the grid stands: shared by frames in which it moves.
+// Data that does not depend on the grid's position: shared by frames in which it moves.
 struct GridSamples {
   // Each sample with its neighbour along z, x fastest: four corners of a cell are then 16 bytes in a row.
   std::vector<float> pairs;

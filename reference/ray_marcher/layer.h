@@ -17,7 +17,8 @@ struct Layer {
   double constant = 0;   // [-] density in the whole region
   bool varies = false;   // is there anything besides the constant
   scene::Region varied;  // the varying part is zero (or negligible) outside this, or outside the medium's region
-  // What varies, laid out for the kernels; neither for a field that has no kernel and is marched by plain loops.
+  // The varying part, laid out for the kernels. Both are null for a field without kernel, which is
+  // marched by plain loops.
   std::shared_ptr<const GridField> grid;
   std::shared_ptr<const GaussianField> gaussians;
   LocalShape shape;  // the region for the kernels

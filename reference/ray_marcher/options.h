@@ -1,4 +1,4 @@
-// What a user can set on the ray marcher.
+// Settings of the ray marcher.
 #pragma once
 #include <string>
 #include <vector>

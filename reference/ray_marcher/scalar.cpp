@@ -41,7 +41,7 @@ Rgb in_scattered(const Plan& plan, std::size_t light, const std::vector<double>&
   return scattering * from.irradiance * transmittance_to_light(plan, light, x, from, counters);
 }
 
-// What a light sends to a step: as to its midpoint, but with the mean of the inverse square over the step.
+// Light that a lamp sends to a step: evaluated at the midpoint, but with the mean of the inverse square over the step.
 scene::Incident incident_on_step(const scene::Light& light, const Ray& ray, const Step& step) {
   const auto ball = scene::ball(light);
   if (!ball) return incident(light, ray.at(step.t));

@@ -21,7 +21,7 @@ class Transport {
         back_(l, obstacles, u, from.axis, dt / l.h, how.trace),
         forth_(l, obstacles, u, from.axis, -dt / l.h, how.trace) {}
 
-  // What was at the feet; with `range`, the least and greatest of the samples around them too.
+  // Carries the values at the feet; with `range`, also the least and greatest of the samples around the feet.
   void carry(const Field<Real>& source, Field<Real>& to, Range<Real>* range = nullptr) const {
     const Sampler<Real, D> samples(source);
     each([&](const Block& b) {

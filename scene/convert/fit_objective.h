@@ -1,4 +1,4 @@
-// What a fit of Gaussians makes small: sum over voxels of E^2, E = sum w B - D, and its gradient. Zhou et al. 2008, Eq. 9.
+// Objective of a fit of Gaussians: sum over voxels of E^2, E = sum w B - D, and its gradient. Zhou et al. 2008, Eq. 9.
 //
 // All in samples of the grid: sample (i, j, k) sits at (i, j, k), widths are counted in voxels.
 #pragma once
@@ -8,7 +8,7 @@
 
 namespace airlight::scene {
 
-// What differs between a fit and its grid. With E = fit - density, over all voxels.
+// Differences between a fit and its grid. E = fit - density, over all voxels.
 struct FitErrors {
   double squared_ratio = 0;  // sum E^2 / sum D^2: the publication's "relative error"; 0 for an empty grid
   double relative_l2 = 0;    // its root

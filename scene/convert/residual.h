@@ -1,4 +1,4 @@
-// What a sum of Gaussians leaves of a voxel grid, R = D - D~ at the samples, in 8 bits a sample.
+// Difference between a voxel grid and a sum of Gaussians, R = D - D~ at the samples, in 8 bits a sample.
 // Zhou et al. 2008, section 5.2: level = round(R / step), |level| <= 127, small levels dropped.
 #pragma once
 #include <cstdint>

@@ -1,10 +1,10 @@
-// What flows: an incompressible fluid of constant density in a box, and what it carries along.
+// A flow problem: an incompressible fluid of constant density in a box, and the quantities that it carries along.
 //
 //   u_t = -(u.grad)u - grad p + viscosity lap u + f,   div u = 0
 //   d_t = -u.grad d + diffusivity lap d - decay d + sources,  and the same for the temperature
 //
-// f is what buoyancy, confinement of vorticity and forces accelerate [m/s^2]; p is pressure over density [m^2/s^2].
-// `density` is that of smoke [-], as media of scenes have it; `temperature` the excess over what is around [K].
+// f is the acceleration by buoyancy, confinement of vorticity and forces [m/s^2]; p is pressure over density [m^2/s^2].
+// `density` is that of smoke [-], as in the media of scenes; `temperature` is the excess over the surroundings [K].
 #pragma once
 #include <array>
 #include <cmath>
@@ -39,7 +39,7 @@ struct Side {
 };
 std::string side_name(Side::Kind);
 
-// How the velocity begins. What is not periodic is made divergence-free by the solver's first projection.
+// Initial velocity. An aperiodic velocity is made divergence-free by the solver's first projection.
 struct AtRest {};
 struct TaylorGreen {  // u = speed sin kx cos ky, v = -speed cos kx sin ky, k = 2 pi waves / size, from the low corner
   double speed = 1;   // [m/s]

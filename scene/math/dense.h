@@ -8,7 +8,7 @@
 
 namespace airlight::scene {
 
-// A B. What is no stored matrix, such as a transposed one, is copied first.
+// The product A B. Arguments that are not stored matrices, such as a transposed one, are copied first.
 Eigen::MatrixXd product(const Eigen::Ref<const Eigen::MatrixXd>& a, const Eigen::Ref<const Eigen::MatrixXd>& b);
 
 // Eigenvalues, ascending, and orthonormal eigenvectors, one a column.

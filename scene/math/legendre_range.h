@@ -18,7 +18,7 @@ Interval legendre_range(const Eigen::VectorXd& f, const TensorShape&, int dimens
 // Range of a series in one variable.
 Interval legendre_range(const Eigen::VectorXd& series);
 
-// What |f| cannot exceed: sum of |coefficient| times the greatest of its function.
+// Upper bound of |f|: sum of |coefficient| times the greatest value of its function.
 double legendre_bound(const Eigen::VectorXd& f, const TensorShape&, int dimensions = 3);
 
 // Where a series is greatest: at one place at least `found`, nowhere above `bound` but for rounding.

@@ -1,4 +1,4 @@
-// What a flow can begin with, from OpenVDB files of any program: signed, and with directions.
+// Grids for the start of a flow, from OpenVDB files of any program: signed, and with directions.
 #pragma once
 #include <array>
 #include <string>

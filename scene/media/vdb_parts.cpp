@@ -68,7 +68,7 @@ void check_sidecar(const std::string& path, std::string_view file) {
     fail(path, fmt::format("damaged: its checksum is {}, {}.xxh128 says {}", found, path, expected.substr(0, 32)));
 }
 
-// What io::File does, on bytes that have been checked.
+// Reads like io::File, from bytes that have been checked.
 class Reader : public openvdb::io::Archive {
  public:
   openvdb::GridBase::Ptr read(std::istream& stream, const VdbEntry& entry) {

@@ -1,4 +1,4 @@
-// What reading and writing of OpenVDB files have in common: for vdb_*.cpp alone, the only sources that see OpenVDB.
+// Common parts of reading and writing OpenVDB files: for vdb_*.cpp alone, the only sources that include OpenVDB.
 #pragma once
 #include <openvdb/openvdb.h>
 

@@ -64,8 +64,8 @@ Box support(const VoxelGrid&);
 // `xxh128sum PATH`) it must match.
 VoxelGrid read_vdb(const std::string& path, const std::string& name = "density", std::size_t max_voxels = 1u << 30);
 
-// Writes the samples as a float fog volume called `name`, atomically; zero samples stay inactive. What it writes comes
-// back bit for bit (the rotation to rounding), unless read_vdb must refuse it. Throws Error.
+// Writes the samples as a float fog volume called `name`, atomically; zero samples stay inactive. read_vdb reads it
+// back bit for bit (the rotation up to rounding), unless it must refuse the grid. Throws Error.
 void write_vdb(const std::string& path, const VoxelGrid&, const std::string& name = "density");
 
 }  // namespace airlight::scene
