@@ -16,7 +16,7 @@ namespace airlight::gpu {
 class Program;
 class RasterProgram;
 
-// What a shader may count on; checked by those who need more than OpenGL's minimum.
+// Limits of the device for shaders; checked by users that need more than OpenGL's minimum.
 struct Limits {
   std::size_t storage_block = 0;  // bytes of one storage buffer
   int storage_blocks = 0;         // in one compute shader; OpenGL promises 8

@@ -1,4 +1,4 @@
-// What passed between host and device, counted where it is done: a frame's is the difference of two of these.
+// Transfers between host and device, counted where they are done: a frame's traffic is the difference of two of these.
 #pragma once
 #include <map>
 #include <string>

@@ -1,5 +1,5 @@
-// What measures something that is no picture: an evaluator's errors, a kernel's rate, vectors that are recomputed. An
-// experiment of kind "numbers" makes a row of each run.
+// A probe measures something that is no picture: an evaluator's errors, a kernel's rate, vectors that are recomputed.
+// An experiment of kind "numbers" makes a row of each run.
 #pragma once
 #include <filesystem>
 #include <map>
@@ -18,7 +18,7 @@ class NoDataFolder : public Unavailable {
   using Unavailable::Unavailable;
 };
 
-// What a probe may be given besides its settings: the file of the experiment's [[scene]], none without one.
+// Input of a probe besides its settings: the file of the experiment's [[scene]]; empty without one.
 struct ProbeInput {
   std::filesystem::path file;
   std::map<std::string, std::string> overrides;  // of a scene file

@@ -234,7 +234,7 @@ int plot_experiments(const ExperimentOptions& options) {
 int judge_gates(const ExperimentOptions& options, std::vector<GateResult>& results) {
   check_profile(options);
   const Folders folders = folders_of(options);
-  // What an earlier run of this very program finished is not computed again.
+  // Rows that an earlier run of this program finished are not computed again.
   const std::vector<Experiment> experiments = read_and_check(options, folders, true);
   RunProgress progress(planned_work(experiments, folders.root / "results"), RunProgress::standard_streams(false));
   for (std::size_t i = 0; i < experiments.size(); ++i) {
@@ -271,7 +271,7 @@ int gates(const ExperimentOptions& options) {
   try {
     return judge_gates(options, results);
   } catch (const Error& error) {
-    // What ends the command says nothing about accuracy: an error beside the gates that were judged.
+    // An error that ends the command says nothing about accuracy: it is reported beside the gates that were judged.
     if (!options.junit.empty()) write_junit(options.junit, results, error.what());
     throw;
   } catch (const scene::Interrupted& stop) {

@@ -2,8 +2,8 @@
 // for them with `committed_references = true` in a profile (experiments/README.md).
 //
 // The key is the content of scene, film size, renderer, settings and layer. Unlike the cache (reference_cache.h) it
-// leaves out the program's sources, compiler and device: another build reads the same film. What a change of the program
-// would do to it, a test watches: it renders a few samples of each film anew and compares.
+// leaves out the program's sources, compiler and device: another build reads the same film. A test watches for changes
+// of the program that would change a film: it renders a few samples of each film anew and compares.
 #pragma once
 #include <filesystem>
 #include <memory>

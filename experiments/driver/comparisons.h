@@ -1,4 +1,4 @@
-// What is read off several rows together: who is on the front, who is faster at equal error or closer at equal time.
+// Results that compare several rows: the front, and speed-ups at equal error and error ratios at equal time.
 #pragma once
 #include <string>
 #include <vector>

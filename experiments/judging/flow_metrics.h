@@ -1,4 +1,4 @@
-// What flows are judged by: names, and what they say of one flow at one time.
+// Metrics of flows: names, and their values for one flow at one time.
 //
 // Metrics of the flow at the end, or at the time that a suffix names ("density.rel_l2@0.5", in seconds, a frame's):
 //
@@ -52,7 +52,7 @@ struct FlowSample {
 std::vector<Point3> sample_points(const scene::FlowProblem&);
 FlowSample sample(const scene::Flow&, const std::vector<Point3>&);
 
-// What is known of a flow up to a frame: the totals of each, and its samples.
+// Data of a flow up to a frame: the totals of each frame, and the samples of the last.
 struct FlowMoment {
   std::vector<scene::Totals> totals;
   FlowSample here;

@@ -73,7 +73,7 @@ MatrixXd dense(int size, const std::function<Array(const Array&)>& apply) {
   return m;
 }
 
-// What is timed, with all that is prepared once.
+// The part to time, with everything prepared that is needed once.
 std::function<void()> part_of(const std::string& part, int n) {
   const auto space = std::make_shared<ConfinedSpace>(3, n);
   const Array u = n > 1 ? space->project(noise(space->size(), 1)) : Array();
@@ -150,7 +150,7 @@ Findings LegendreCost::run(const ProbeInput&, const scene::Settings& s, const sc
     part();  // memory that is kept
     std::vector<double> ms;
     repeat(int(s.integer("runs")), s.real("budget"), [&] {
-      // What is too short for the clock is repeated.
+      // Parts that are too short for the clock are repeated.
       int rounds = 0;
       const double start = processor_time();
       double spent = 0;

@@ -1,4 +1,4 @@
-// What a renderer shows along rays, for vectors: films of one pixel, of a preparation that is made once.
+// A renderer's result along rays, for vectors: films of one pixel, from a preparation that is made once.
 #pragma once
 #include <map>
 #include <memory>

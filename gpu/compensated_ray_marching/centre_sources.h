@@ -1,6 +1,7 @@
-// Source radiance at the centres of the Gaussians, on the device: methods/compensated_ray_marching/centre_sources.h. What passes the smoke
-// and the diffusion system's matrix are found once; a light that turns sends its harmonics. In double precision, for the system squares
-// conditions of a thousand, and shows what its right side was rounded by.
+// Source radiance at the centres of the Gaussians, on the device:
+// methods/compensated_ray_marching/centre_sources.h. Transmittances and the diffusion system's matrix
+// are computed once; a light that turns uploads its harmonics. In double precision, because the system
+// squares condition numbers of a thousand, which amplifies the rounding of its right side.
 #pragma once
 #include <array>
 

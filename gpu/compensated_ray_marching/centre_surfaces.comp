@@ -1,4 +1,4 @@
-// What surfaces reflect of the environment past smoke and spheres, a pixel a work group: SourceRadiance::irradiance, of Lambert's.
+// Light of the environment that Lambertian surfaces reflect past smoke and spheres, a pixel per work group: SourceRadiance::irradiance.
 layout(local_size_x = LOCAL_SIZE_X) in;
 #include "raster/view.glsl"
 #include "raster/primitive.glsl"

@@ -1,4 +1,5 @@
-// What shaders read of the processor's tables for sources at the centres, in double precision: centre_tables.glsl, triple_product.glsl.
+// The processor's tables for sources at the centres, uploaded for shaders in double precision: centre_tables.glsl,
+// triple_product.glsl.
 #pragma once
 #include "gpu/compensated_ray_marching/interface.h"
 #include "methods/compensated_ray_marching/source_radiance.h"

@@ -1,5 +1,5 @@
-// What surfaces reflect of the environment past smoke and spheres, by directions, a pixel a work group: SourceRadiance::irradiance of
-// `directional`, of Lambert's.
+// Light of the environment that Lambertian surfaces reflect past smoke and spheres, by directions, a pixel per work group:
+// SourceRadiance::irradiance of `directional`.
 layout(local_size_x = LOCAL_SIZE_X) in;
 #include "raster/view.glsl"
 #include "raster/primitive.glsl"

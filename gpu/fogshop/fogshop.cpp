@@ -46,7 +46,7 @@ class PreparedFogshopGpu final : public scene::Prepared {
   std::optional<std::vector<scene::StageTime>> next(std::shared_ptr<const Scene>, const Execution&) override;
 
  private:
-  // What a frame leaves on the device, null where the scene has no such thing.
+  // Buffers of a frame on the device, null if the scene does not need them.
   struct Picture {
     const Buffer *distances = nullptr, *primitives = nullptr, *airlight = nullptr, *surface = nullptr;
   };

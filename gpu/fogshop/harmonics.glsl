@@ -63,7 +63,7 @@ vec3 band(int at, int depths, int l, vec3 place) {
   return g;
 }
 
-// What the medium at depth T from a light scatters onto the surface, reflected, per unit of I/d^2 and albedo: Eq. 25.
+// Reflected light that the medium at depth T from a light scatters onto the surface, per unit of I/d^2 and albedo: Eq. 25.
 vec3 reflect_point(Reflected r, vec3 to_light, vec3 T) {
   vec3 place = band_place(T, point_depths), sum = vec3(0);
   for (int l = 0; l < sh_order; ++l) set_row(weights_from + l, zonal_factor(l) * band(point_bands_at, point_depths, l, place));

@@ -23,7 +23,7 @@ float gaussian_depth(vec3 from, vec3 to) {
   return sum;
 }
 
-// What is known where a slice begins or ends: the ray parameter [m], depths from there to the camera and to the light.
+// Values where a slice begins or ends: the ray parameter [m], depths from there to the camera and to the light.
 struct Edge {
   float t, depth, shadow;  // the depth of both ways with the constant; that of the Gaussians towards the light alone
 };

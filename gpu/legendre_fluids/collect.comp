@@ -16,7 +16,7 @@ layout(std430, binding = AT_REGIONS) readonly buffer Regions { float regions[]; 
 uniform vec3 push_amounts[PUSHES];
 #endif
 
-// What forces change along an axis, as a scalar: its coefficient at a place of SIZE.
+// Change by forces along an axis, as a scalar: its coefficient at a place of SIZE.
 float force(int axis, int place) {
   float sum = 0;
 #if SCALARS > 0

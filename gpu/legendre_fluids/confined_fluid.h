@@ -24,7 +24,7 @@ struct Regions {
   std::vector<Array> sources, pushes;
 };
 
-// What acts on the fluid before it moves in a step, or, in the opposite order, after it.
+// Influences on the fluid before it moves in a step; after it they act in the opposite order.
 struct Acting {
   double fades = 1;  // what decay leaves
   // For the carried fields, in their order: amounts added by sources, [source][field]; push per unit of

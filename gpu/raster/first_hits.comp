@@ -1,4 +1,4 @@
-// What ends the rays of a view, one invocation a ray (gpu/raster/first_hits.h).
+// The ends of the rays of a view, one invocation per ray (gpu/raster/first_hits.h).
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "raster/view.glsl"
 #include "raster/triangles.glsl"

@@ -1,4 +1,4 @@
-// What ends the camera rays: scene::ray_end for every pixel centre, written into storage buffers on the device.
+// The ends of the camera rays: scene::ray_end for every pixel centre, written into storage buffers on the device.
 //
 // Way::tree, a compute shader: boxes and triangles are skipped in single precision, with a margin for rounding.
 // Candidates are intersected in double precision, by the test of scene/geometry/ray_primitive, and the distance is

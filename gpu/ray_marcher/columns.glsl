@@ -3,7 +3,7 @@
 uint shadow_step_count = 0;  // density evaluations of this invocation
 
 #if DEPTHS > 0
-// What the constant of layer k has of a ray that is clipped to the region [m].
+// Column of layer k's constant along a ray that is clipped to the region [m].
 float constant_column(int k, vec2 t) {
   return layers[k].constant > 0 && t.x < t.y ? min(layers[k].constant * min(t.y - t.x, endless), endless) : 0;
 }

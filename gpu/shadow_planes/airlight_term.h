@@ -1,4 +1,5 @@
-// What airlight.glsl reads: media, the evaluator's numbers, and which air of which light (methods/shadow_planes/airlight_term.h).
+// Input of airlight.glsl: media, the evaluator's numbers, and the term for each light
+// (methods/shadow_planes/airlight_term.h).
 #pragma once
 #include <map>
 #include <memory>

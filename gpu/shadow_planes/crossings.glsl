@@ -148,7 +148,7 @@ double next_place(SphereShadow s, double place, double end) {
   return next;
 }
 
-// What a ball hides from the light is convex: one stretch of the ray, which ends on the tangent cone or on the ball.
+// The shadow of a ball is convex: one stretch of the ray, which ends on the tangent cone or on the ball.
 void cross_spheres(Ray ray, double end) {
   end *= 1 - 1e-10LF;  // where the ray ends on a ball it does not enter it, whatever rounding says
   for (int i = 0; i < solid_count; ++i) {

@@ -58,7 +58,7 @@ bool meets_air(Line line, double end) {
 #endif
 
 #if SURFACES
-// What a surface reflects of the light, without what is lost on the way to the eye.
+// Light that a surface reflects, without the loss on the way to the eye.
 vec3 reflected_light(Line line, double end, int surface, dvec3 normal) {
   if (dot(normal, line.direction) > 0) normal = -normal;
   dvec3 offset = light - line.origin - end * line.direction;

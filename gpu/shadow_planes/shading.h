@@ -11,7 +11,7 @@
 
 namespace airlight::gpu::shadow_planes {
 
-// What lights leave in a picture, in a frame's buffers.
+// Light of all lamps in a picture, in a frame's buffers.
 struct LitPicture {
   // Clears the counters. `crossings`: edges are crossed; `dispatches`: of lights and airs, those that go on included.
   LitPicture(Frame&, const scene::View&, bool hits, bool crossings, int dispatches);

@@ -89,7 +89,7 @@ PreparedShadowPlanesGpu::PreparedShadowPlanesGpu(std::shared_ptr<const Scene> sc
   times_ = prepare();
 }
 
-// What depends on the surfaces; edges of meshes that have not moved are those of the frame before.
+// Prepares everything that depends on the surfaces. Meshes that have not moved keep the edges of the previous frame.
 std::vector<scene::StageTime> PreparedShadowPlanesGpu::prepare() {
   OfSurfaces now;
   const bool lit = std::any_of(scene_->lights.begin(), scene_->lights.end(), scene::shines);

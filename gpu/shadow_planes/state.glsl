@@ -18,7 +18,7 @@ State begin_state(int place, int m) {
   return State(-1e300LF, 0, vec4(0), -1, m, 0, m);
 }
 
-// What a pixel took: lit parts, crossings, gatherings after the first.
+// Work of a pixel: lit parts, crossings, gatherings after the first.
 struct Work {
   int parts, crossings, gatherings;
 };

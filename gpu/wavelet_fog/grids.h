@@ -1,5 +1,6 @@
-// Grids of numbers over a map in one buffer of the device, and filters between them: Mallat's decomposition in single precision
-// (methods/wavelet_fog/decomposition.h). What is told once is done again whenever the first grid changes.
+// Grids of numbers over a map in one buffer of the device, and filters between them: Mallat's
+// decomposition in single precision (methods/wavelet_fog/decomposition.h). Passes are recorded once and
+// run again whenever the first grid changes.
 #pragma once
 #include <functional>
 #include <memory>
@@ -32,8 +33,8 @@ class Grids {
   void up(int from, const Taps& along_u, const Taps& along_v, int to, int added = -1, double sign = 1);
   // Sets values below 0 to 0 and restores the sum.
   void clamp(int from, int to);
-  // Any other program over all of grid `to`: `set` gives it its uniforms. What it needs beyond values and grids is bound by run's
-  // caller.
+  // Records another program that runs over all of grid `to`: `set` gives it its uniforms. The caller of run binds what
+  // it needs beyond values and grids.
   void pass(Program&, std::function<void(Program&)> set, const scene::IndexRange& invocations);
 
   // After the last of these: the buffers. Throws Unavailable where the device's are smaller.

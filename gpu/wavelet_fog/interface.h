@@ -1,4 +1,4 @@
-// What host and shaders of this method must agree about, said once: numbers that shaders get as definitions.
+// Constants and layouts shared by host and shaders of this method: shaders get the numbers as definitions.
 #pragma once
 #include <map>
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace airlight::gpu::wavelet_fog {
 
-// Storage blocks, AT_... in shaders. gpu/raster has 10 to 12 and 14 (surfaces, the tree), environments 9. What no shader has at the
-// same time shares a number: no stage needs more than 8.
+// Storage blocks, AT_... in shaders. gpu/raster has 10 to 12 and 14 (surfaces, the tree), environments 9. Blocks that
+// no shader uses together share a number: no stage needs more than 8.
 namespace at {
 enum Binding {
   fog = 0,

@@ -34,7 +34,8 @@ class FogOnDevice {
   // `distances` [m] unless null.
   void add_depths(const scene::View&, const Buffer* distances, const Buffer& depths, const Buffer& counters, bool first,
                   bool counts);
-  // What surfaces reflect of a lamp, seen through this medium on its way to them; the program is told of the lamp before.
+  // Light of a lamp that surfaces reflect, dimmed by this medium on its way to them. The program must
+  // know the lamp before.
   Program& light_rays() { return *light_rays_; }
   void dim(const scene::View&, const Buffer& lit);
 

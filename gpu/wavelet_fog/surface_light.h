@@ -1,5 +1,5 @@
-// What rays end on, seen without the fog in front of it: surfaces in the light of lamps, which comes through the fog, and the
-// environment.
+// Radiance at the ends of rays, without the fog in front of them: surfaces in the light of lamps, which comes through
+// the fog, and the environment.
 #pragma once
 #include <functional>
 #include <memory>
