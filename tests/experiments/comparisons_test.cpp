@@ -1,4 +1,4 @@
-// What is read off several rows together, with answers worked by hand.
+// Comparisons of several rows, with answers worked by hand.
 #include "experiments/driver/comparisons.h"
 
 #include <catch2/catch.hpp>

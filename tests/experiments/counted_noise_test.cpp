@@ -155,7 +155,7 @@ TEST_CASE("counted noise that is not known is refused, exact images are exact", 
   CHECK_THROWS_WITH(counted(one_sample), Catch::Contains("noisy"));
   one_sample.add("n").assign(48, 2.0f);
   CHECK(counted(one_sample).value == Approx(same.value));
-  // What is removed elsewhere needs batches.
+  // Without ImageNoise::counted noise is removed from the error, which needs batches.
   CHECK_THROWS_WITH(measure({"rmse"}, one_sample, reference, "mean", {}), Catch::Contains("noisy"));
 }
 

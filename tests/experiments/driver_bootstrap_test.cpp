@@ -67,7 +67,7 @@ TEST_CASE("a ratio of errors has the interval that theirs leave it", "[driver]")
 
 namespace {
 
-// What a row's point is drawn as, a thousand times.
+// A thousand bootstrap samples of a row's point.
 std::vector<Point> drawn(const Row& row) {
   std::vector<Point> points;
   const Row one = timed_row(1, "another group");

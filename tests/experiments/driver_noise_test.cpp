@@ -1,4 +1,4 @@
-// What the driver makes of noise and masks: rows are what the metrics say of the pictures.
+// Noise and masks in the driver: rows contain the metrics of the pictures.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>

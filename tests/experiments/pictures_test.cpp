@@ -1,4 +1,4 @@
-// What the driver shows of a film.
+// Pictures that the driver makes of a film.
 #include "experiments/driver/pictures.h"
 
 #include <catch2/catch.hpp>

@@ -12,7 +12,7 @@ using Catch::Contains;
 
 namespace {
 
-// What was written to a file that is open.
+// Content of an open file.
 std::string written(std::FILE* file) {
   std::fflush(file);
   std::string text(4096, '\0');

@@ -116,7 +116,7 @@ TEST_CASE("a nearer surface hides the backdrop, and the backdrop a farther one",
   CHECK(!camera_end(far, ray).hit);
   CHECK(camera_end(far, ray).seen);
   CHECK(ray_end(far, ray).hit);
-  // What has no end is behind every surface, and in front of environments.
+  // A pixel with infinite depth is behind every surface, and in front of environments.
   CHECK(camera_end(far, camera_ray(far.camera, 3.5, 1.5, 4, 2)).hit);
 }
 

@@ -27,9 +27,9 @@ class BallTransport {
  private:
   // A place on a chord: distance of the chord from the centre, and the way from its middle, in the direction of the light.
   double depth_from_face(double impact, double along) const;
-  // What each unknown (moment l at node i) adds to the radiance there.
+  // Contribution of each unknown (moment l at node i) to the radiance there.
   Eigen::RowVectorXd gathered(double impact, double along) const;
-  // What each unknown adds to the moments at that distance from the centre: a row for each.
+  // Contribution of each unknown to the moments at that distance from the centre: a row for each.
   Eigen::MatrixXd moment_rows(double radius) const;
 
   BallLight light_;

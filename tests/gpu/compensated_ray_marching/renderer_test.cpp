@@ -122,7 +122,7 @@ DEVICE_TEST_CASE("compensated march on the device: other lights on surfaces in t
     return scene;
   };
   const auto dark = lit_by(scene::make_constant_environment(Rgb::Zero()));
-  // What was left out in the dark is prepared anew.
+  // Stages that were left out in the dark are prepared anew.
   CHECK(!device.prepare(dark, {device.settings(), small}, {1, {}})->next(lit_by(uneven(1)), {1, {}}));
   const auto prepared = device.prepare(lit_by(uneven(2)), {device.settings(), small}, {1, {}});
   for (const auto& scene : {lit_by(uneven(1)), dark, lit_by(uneven(0.3))}) {

@@ -1,4 +1,5 @@
-// What frames cost on the device that is there, by the processor's user time: on a software renderer, however busy the machine is.
+// Cost of frames on the available device, by the processor's user time: with a software renderer, for
+// any load of the machine.
 //   airlight_tests "wavelet fog: times*"
 #include <sys/resource.h>
 

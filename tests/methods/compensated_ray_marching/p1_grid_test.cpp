@@ -126,7 +126,7 @@ TEST_CASE("diffusion on a grid: a point in smoke without end, an even source in 
   }
 }
 
-// What is made is absorbed or flows out, cell by cell and over the box.
+// Emitted light is absorbed or flows out, cell by cell and over the box.
 TEST_CASE("diffusion on a grid: light is conserved", "[compensated_ray_marching]") {
   const OrdinateGrid grid{{6, 5, 7}, Vec3(0.3, 0.25, 0.4)};
   const Eigen::ArrayXd extinction = uneven(grid);

@@ -1,4 +1,4 @@
-// What a picture says where no sample, or next to none, brought light.
+// Errors of a picture where no sample, or next to none, brought light.
 #include "reference/path_tracer/certainty.h"
 
 #include <catch2/catch.hpp>

@@ -41,7 +41,7 @@ std::vector<scene::Medium> scaled(std::vector<scene::Medium> media, double extin
   return media;
 }
 
-// What may be in the media's place: one of each kind, and two that overlap, of different colours.
+// Media to test: one of each kind, and two that overlap, of different colours.
 std::vector<std::vector<scene::Medium>> media() {
   scene::Medium ball = medium(scene::Sphere{{0, 0, 0}, 1}, 1, 0.9, phase_of("hazy"));
   scene::Medium blue = ball, red = cloud();

@@ -76,9 +76,10 @@ TEST_CASE("ray marcher: pictures with maps converge to exact shadows", "[ray_mar
   }
 }
 
-// Maps are made of densities in float or in double, and looked up likewise: relative errors of some 1e-7, as measured.
-// Which node of avsm goes can turn on such a difference where two would do nearly the same: then a texel errs otherwise,
-// but not more. In two of these scenes it does, and the pictures change by 5.6e-5 and 1.6e-4, a hundredth of avsm's error.
+// Densities of maps, and lookups, are in float or in double: relative errors of about 1e-7, as measured.
+// Such a difference can decide which node of avsm is removed, if two are nearly equal. The texel's error
+// then differs, but is not larger. In two of these scenes it does, and the pictures change by 5.6e-5 and
+// 1.6e-4, a hundredth of avsm's error.
 TEST_CASE("ray marcher: look-ups by kernels agree with the plain path", "[ray_marcher][light_map]") {
   for (const auto& [name, scene] : assorted_scenes())
     for (const char* encoding : encodings) {

@@ -1,4 +1,4 @@
-// What flows begin with from files: frames come back bit for bit, other grids at their places, damage is refused.
+// Initial states of flows from files: frames come back bit for bit, other grids at their places, damage is refused.
 #include <random>
 
 #include "reference/stable_fluids/stable_fluids.h"
