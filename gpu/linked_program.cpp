@@ -14,7 +14,7 @@ namespace {
 
 std::string refusal(const std::string& files, const char* what, Context& context, const char* log,
                     const ShaderSource& source) {
-  context.forget_errors();  // the same words again
+  context.forget_errors();  // the driver's message would repeat this error
   return fmt::format("{} was {} by {}:\n{}", files, what, context.renderer(), with_file_names(log, source));
 }
 

@@ -42,7 +42,7 @@ struct FigureMap {
 using Columns = std::map<std::string, std::vector<double>>;
 
 struct Findings {
-  std::vector<Measure> figures;  // those of figures() that are defined here, in any order
+  std::vector<Measure> figures;  // the defined ones of figures(), in any order
   std::string note;              // where words are needed
   std::map<std::string, double> counters;
   // Time of what is measured once, where it is one: median and interval by ranks of so many runs [s].

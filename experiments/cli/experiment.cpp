@@ -31,7 +31,7 @@ struct ExperimentOptions {
   std::vector<std::string> names;
   bool resume = false;
   bool gates_only = false;        // experiments without gates are left out
-  bool in_tests = false;          // likewise those without in_tests = true
+  bool in_tests = false;          // experiments without in_tests = true are left out
   bool margins = false;           // how far each gate is from failing
   bool fresh_references = false;  // first makes all committed references of these experiments anew
   int threads = 0;

@@ -33,7 +33,7 @@ float visible_share(dvec3 x, int surface) {
 
 void main() {
   int place = int(gl_WorkGroupID.y) * view_width + int(gl_WorkGroupID.x), primitive = primitive_of[place];
-  if (primitive < 0) {  // the same for all lanes
+  if (primitive < 0) {  // uniform over all lanes
     if (lane == 0) lit[place] = Lit(vec4(0), vec4(0), 0, 0);
     return;
   }

@@ -71,7 +71,7 @@ class PreparedFogshopGpu final : public scene::Prepared {
   std::unique_ptr<FogOnDevice> fog_;
   std::unique_ptr<FirstHits> first_hits_;    // null: rays are infinite
   std::unique_ptr<SurfaceShading> shading_;  // null: left out
-  std::unique_ptr<Background> background_;   // the same
+  std::unique_ptr<Background> background_;   // null: left out
   std::vector<scene::StageTime> times_;
   int maps_made_ = 0;            // for this frame; others are of frames before
   std::optional<Traffic> next_;  // of next(), if there was one

@@ -93,7 +93,7 @@ void main() {
         pair_phase += angle.weighted;
         pair_angle += angle.plain;
       }
-      if (extrapolate != 0 && k % 2 == 0) {  // the same of two slices at a time
+      if (extrapolate != 0 && k % 2 == 0) {  // light of two slices at a time
         if (k > 0) {
           float angle = angle_of_slice(seen, h, pair.t, here.t).plain;
           half_sum += light_of_slice(phase_g == 0 ? angle : angle * pair_phase / max(pair_angle, 1e-30), h, pair, here,

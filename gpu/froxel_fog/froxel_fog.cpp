@@ -27,7 +27,7 @@ struct SceneOnDevice {
   airlight::lit_media::Plan plan;
   ray_marcher::RayEnds ends;
   std::unique_ptr<lit_media::LitMedia> lit;       // null: nothing is to be seen
-  std::unique_ptr<ray_marcher::Picture> picture;  // likewise
+  std::unique_ptr<ray_marcher::Picture> picture;  // null: nothing is to be seen
 
   SceneOnDevice(Context& context, std::shared_ptr<const Scene> scene, const Options& options,
                 ray_marcher::GridStorage storage, Frame& frame, const Execution& execution)

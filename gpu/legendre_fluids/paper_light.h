@@ -78,7 +78,7 @@ class PaperSystems {
   Definitions definitions_;
   std::vector<double> extinctions_;     // different ones
   std::array<int, 3> extinction_of_{};  // of each channel
-  std::array<int, 3> system_of_{};      // likewise, of E_s
+  std::array<int, 3> system_of_{};      // of each channel, for E_s
   Rgb scale_ = Rgb::Ones();
   std::vector<double> tables_;
   std::size_t directions_at_ = 0;

@@ -18,8 +18,8 @@ struct LitPicture {
   scene::View view;
   const Buffer *distances, *primitives;  // of the first hits; null: there are none
   const Buffer &pixels, &states;         // the layouts of pixels.glsl, state.glsl
-  Buffer& counters;                      // that of counters.glsl
-  int next_groups = 1;                   // of its resume_groups, the first that no dispatch writes yet
+  Buffer& counters;                      // the layout of counters.glsl
+  int next_groups = 1;                   // index of the first of resume_groups that no dispatch writes yet
   bool empty = true;                     // nothing is in the pixels yet
 };
 

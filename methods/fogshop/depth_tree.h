@@ -55,7 +55,7 @@ class DepthTree {
   std::vector<int> children_;
   std::vector<DepthCell> cells_;
   std::vector<int> listed_;
-  GaussianArrays listed_gaussians_;  // the same
+  GaussianArrays listed_gaussians_;  // the Gaussians of listed_
 };
 
 // Error of the polynomial of a cell of this side [m] for a Gaussian of width 1/a at `distance` [m] from the cell,

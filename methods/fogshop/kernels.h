@@ -48,7 +48,7 @@ struct Crossings {
   std::vector<double> x, y, z, half_depth;  // of those arrays
   // Set by whole_depths.
   std::vector<double> whole;       // optical depth over the whole line [-]
-  std::vector<double> to_nearest;  // the same up to the place nearest to the centre, b_i^r of Eq. 10 clamped [-]
+  std::vector<double> to_nearest;  // optical depth up to the point nearest to the centre, b_i^r of Eq. 10 clamped [-]
 
   void reserve(int gaussians);
 };

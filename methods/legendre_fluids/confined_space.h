@@ -72,7 +72,7 @@ class ConfinedSpace {
   TensorShape points_shape() const;
   double integral(const Array& values) const;                 // over the box [m^d]
   Array scalar_from_points(const Array& values) const;        // L2 projection
-  Array from_points(const Components& values) const;          // the same of a velocity, before project()
+  Array from_points(const Components& values) const;          // L2 projection of a velocity, before project()
   Array advected(const Components& w, const Array& u) const;  // -w.grad u, projected in L2 but not onto div = 0
   Array scalar_advected(const Components& w, const Array& r) const;
   // Both at once, of a velocity that carries itself and scalars, beside a wind at the points (empty: none): rates one after the other. A

@@ -40,8 +40,8 @@ class PreparedPaper final : public scene::Prepared {
   PaperOptions options_;
   std::string settings_;
   PaperMedium media_;
-  const scene::Medium* medium_ = nullptr;  // of those
-  scene::LegendrePointer field_;           // likewise; null where nothing extinguishes
+  const scene::Medium* medium_ = nullptr;  // the medium of media_
+  scene::LegendrePointer field_;           // the density of media_; null where nothing extinguishes
   std::vector<scene::DirectionalLight> lights_;
   std::optional<PaperLight> light_;
   std::array<std::optional<DensityProduct>, 3> scatters_;  // of an albedo that is a field

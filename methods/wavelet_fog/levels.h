@@ -12,7 +12,7 @@ namespace airlight::wavelet_fog {
 // How coarse grids are made.
 enum class Coarse {
   wavelet,     // the family's analysis: of any sign, as the paper's
-  clamped,     // the same, negative values taken as 0 and the sum restored: a copy that can be rendered alone
+  clamped,     // wavelet, with negative values set to 0 and the sum restored: a copy that can be rendered alone
   restricted,  // p / 2: never negative
 };
 

@@ -14,7 +14,7 @@ struct Options {
   // How a ray's optical depth comes about.
   enum class Variant {
     paper,   // approximation and details of any sign, summed, details up to distances (section 4.3)
-    tele,    // the same by one grid at a time
+    tele,    // details up to distances, by one grid at a time
     direct,  // the map itself
     skip,    // the map itself, empty blocks passed at once
     bound,   // per block the coarsest level that keeps the error below the tolerance

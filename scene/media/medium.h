@@ -29,9 +29,9 @@ struct Homogeneous {
 };
 
 using GridPointer = std::shared_ptr<const VoxelGrid>;        // never null in a scene
-using FogmapPointer = std::shared_ptr<const Fogmap>;         // likewise
-using LegendrePointer = std::shared_ptr<const LegendreBox>;  // likewise
-using FittedPointer = std::shared_ptr<const Fitted>;         // likewise
+using FogmapPointer = std::shared_ptr<const Fogmap>;         // never null in a scene
+using LegendrePointer = std::shared_ptr<const LegendreBox>;  // never null in a scene
+using FittedPointer = std::shared_ptr<const Fitted>;         // never null in a scene
 
 // The closed set of density fields. Code that distinguishes them must name all of them (match), so that a new one does
 // not compile where it is not handled. A renderer that does not support one refuses it by name (unknown_field).

@@ -154,7 +154,7 @@ TEST_CASE("the content of a backdrop is part of the scene's hash", "[backdrop]")
   };
   const std::string film = "image = 'film.exr'\n";
   const std::string one = hash(backdrop(film + "channel = 'distance.R'\n"));
-  CHECK(one == hash(backdrop(film + "depth = 'depth.pfm'\n")));  // the same, written in another way
+  CHECK(one == hash(backdrop(film + "depth = 'depth.pfm'\n")));  // an equal backdrop, written in another way
   CHECK(one != hash(backdrop(film + "channel = 'distance.R'\nscale = 2\n")));
   CHECK(one != hash(backdrop(film + "channel = 'distance.R'\ndepth_scale = 2\n")));
   CHECK(one != hash(perspective));

@@ -43,7 +43,7 @@ void agree(const std::vector<const char*>& names) {
     for (Pairs given : {Pairs{{"variant", "paper"}}, Pairs{{"K", "24"}}, Pairs{{"erf", "precise"}},
                         Pairs{{"K", "12"}, {"extrapolate", "false"}},
                         Pairs{{"K", "13"}, {"extrapolate", "false"}, {"edges", "plain"}}}) {
-      given.emplace("erf", "erf10");  // the same approximation on both sides; `precise` differs by 3.3e-7
+      given.emplace("erf", "erf10");  // one approximation on both sides; `precise` differs by 3.3e-7
       agree(scene, given, 2.4e-5, 7e-6);
     }
   }

@@ -171,7 +171,7 @@ DEVICE_TEST_CASE("pictures of a flow: from where it lies, and prepared anew each
   const auto scene = scene_with(box_of(*flow, 1));
   const gpu::legendre_fluids::LegendreLight on_device;
   const legendre_fluids::LegendreLight on_processor;
-  const scene::Settings settings(on_processor.settings(), {});  // the same for both
+  const scene::Settings settings(on_processor.settings(), {});  // equal settings for both
   experiments::FlowPictures there(*scene, on_device, settings, 3, 1), here(*scene, on_processor, settings, 3, 1);
   for (int frame = 0; frame < 2; ++frame) {
     there.draw(*flow, folder.file("there.png"));

@@ -20,7 +20,7 @@ using Catch::Contains;
 namespace {
 
 constexpr double bound = 3e-6;   // three times what is measured
-constexpr double bent = 3.5e-6;  // likewise, where light has kinks
+constexpr double bent = 3.5e-6;  // three times what is measured, where light has kinks
 
 using ScenePointer = std::shared_ptr<scene::Scene>;
 

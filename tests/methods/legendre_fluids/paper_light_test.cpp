@@ -192,8 +192,7 @@ TEST_CASE("legendre light: what the systems cannot do is refused by name", "[leg
   CHECK(method.supports(scene, {method.settings(), paper("upwind", 32)}).empty());
   refused(paper("least_squares", 32), "n = 32: a dense system of 32768 unknowns, expected at most 1728");
   refused(paper("upwind", 13, {{"solver", "dense"}}), "dense system of 2197 unknowns");
-  scene.media[0].field =
-      random_density({2, 2, 1}, 1);  // the same for all z: 32^2 unknowns where nothing moves along it
+  scene.media[0].field = random_density({2, 2, 1}, 1);  // constant along z: 32^2 unknowns where nothing moves along it
   refused(paper("least_squares", 32), "32768");
   scene.lights = {scene::DirectionalLight{Vec3(1, 0, 0), Rgb::Ones()}};
   scene.camera.forward = Vec3(0.6, 0.8, 0);
