@@ -16,7 +16,7 @@ namespace airlight::gpu {
 class Program;
 class RasterProgram;
 
-// What a shader may count on; checked by those who need more than OpenGL's minimum.
+// Limits of the device for shaders; checked by users that need more than OpenGL's minimum.
 struct Limits {
   std::size_t storage_block = 0;  // bytes of one storage buffer
   int storage_blocks = 0;         // in one compute shader; OpenGL promises 8
@@ -36,8 +36,8 @@ class Context {
   // choose_device or the variable AIRLIGHT_GPU. Places that lack something are passed over. Throws Unavailable in one
   // line, which lists all places, if there is none.
   static Context& get();
-  // As device_choice.h reads it; takes the place of the variable. Throws Error for an empty wish, and after the first
-  // get(), when it is too late.
+  // Chooses a device in the syntax of device_choice.h; overrides the variable. Throws Error for an empty wish, and
+  // after the first get(), when it is too late.
   static void choose_device(const std::string& wish);
   // description() of get(), or the line that says why there is none. Does not throw.
   static std::string name_of_device();
@@ -77,7 +77,7 @@ class Context {
 
   // Compute programs by file name and definitions, compiled once (program.h). Each call is a look-up.
   Program& program(const std::string& file, const std::map<std::string, std::string>& definitions = {});
-  // The same for gpu/<name>.vert and gpu/<name>.frag (raster_program.h).
+  // Raster programs from gpu/<name>.vert and gpu/<name>.frag, compiled once (raster_program.h).
   RasterProgram& raster_program(const std::string& name, const std::map<std::string, std::string>& definitions = {});
 
   Context(const Context&) = delete;

@@ -1,4 +1,4 @@
-// Which of the places that EGL offers is used: what a user may ask for, and what a place must have.
+// Choice among the places that EGL offers: a user's wishes, and the requirements on a place.
 #pragma once
 #include <functional>
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace airlight::gpu {
 
-// What may be asked for, in small letters: "auto" (the first that works), "none", the number of an EGL device ("1", the
-// same as "device 1"), "surfaceless", or a part of GL_VENDOR or GL_RENDERER, there in any case.
+// Wishes, in small letters: "auto" (the first that works), "none", the number of an EGL device ("1", or "device 1"),
+// "surfaceless", or a part of GL_VENDOR or GL_RENDERER in any case.
 std::string small_letters(std::string);
 bool fits(const Attempt&, const std::string& wish);
 
@@ -20,9 +20,9 @@ std::string refusal(const std::vector<Attempt>&, const std::string& wish);
 // The variable AIRLIGHT_GPU_DEBUG is set, and not to 0: contexts are debug contexts.
 bool debug_wanted();
 
-// Fetches the entry points of gl.h into `gl`. What a context lacks, empty if nothing: entry points, or OpenGL 4.5. It
-// must be current. `function` is eglGetProcAddress, which may answer for functions that a driver has not: so the
-// version is asked for as well.
+// Fetches the entry points of gl.h into `gl`. Returns the missing parts of the context, empty if there are none: entry
+// points, or OpenGL 4.5. The context must be current. `function` is eglGetProcAddress, which may return functions that
+// a driver does not have: therefore the version is checked as well.
 std::string load_gl(const std::function<void*(const char*)>& function, Gl& gl);
 
 }  // namespace airlight::gpu

@@ -19,7 +19,7 @@ struct Place {
   void* device = nullptr;  // EGLDeviceEXT; null: surfaceless
 };
 
-// What was made there, or why not.
+// The context that was made there, or the reason for its absence.
 struct Attempt {
   Place place;
   std::string renderer, vendor, version;  // GL_RENDERER, GL_VENDOR, GL_VERSION

@@ -19,7 +19,7 @@ class EnvironmentLights {
   // Other turns, brightness and coefficients; false, and nothing is done: other maps, or lights of another kind.
   bool become(const scene::Scene&);
 
-  // Of one of the lights' maps: rgb of the texels.
+  // The texels of one of the lights' maps: rgb.
   const Buffer& texels(const std::shared_ptr<const scene::EnvironmentMap>&) const;
   int count() const { return int(lights_.size()); }
   // KIND and SH_ORDER, which a program that includes environment.glsl needs for one of them.

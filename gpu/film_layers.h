@@ -10,7 +10,8 @@ struct LayerBlocks {
   int mean, transmittance, surface, airlight, ambient;
 };
 
-// Which parts have layers of their own beside mean, transmittance and surface; what is left out is not added to the mean.
+// Which parts have layers of their own beside mean, transmittance and surface. A part that is left out
+// is not added to the mean.
 struct KeptLayers {
   bool airlight = true;
   std::optional<Rgb> ambient;  // the scene's ambient_in_scatter [W/m^2/sr]

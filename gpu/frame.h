@@ -1,4 +1,5 @@
-// What a Prepared keeps on the device from frame to frame, so that a warm one allocates nothing and waits once.
+// Buffers that a Prepared keeps on the device from frame to frame, so that a warm frame allocates
+// nothing and waits once.
 //
 //   frame.begin(execution);                                   // a mutable gpu::Frame of the Prepared
 //   Buffer& mean = frame.buffers.get("mean", 12 * pixels);
@@ -49,9 +50,10 @@ class Download {
 
   // The first `bytes` of a buffer, which must live until fetch(): a layer, if it is wanted.
   void add(const std::string& layer, const Buffer&, std::size_t bytes);
-  // What is no layer (counters, marks): values() gives it after finish(), nothing where no layer is wanted.
+  // Adds values that are no layer (counters, marks). values() returns them after finish(), and nothing
+  // if no layer is wanted.
   void add_values(const std::string& name, const Buffer&, std::size_t bytes);
-  // What says whether a frame is right: comes down even where no layer is wanted.
+  // Adds a status that says whether a frame is right. It is downloaded even if no layer is wanted.
   void add_status(const std::string& name, const Buffer&, std::size_t bytes);
 
   // Frame::finish: the copies are told to the device; after a wait they are taken to the film.
@@ -84,8 +86,8 @@ class Download {
   const char* mapped_ = nullptr;
 };
 
-// What the processor spent on each stage of the frame that finished last, the wait left out: for tests and profiles, no
-// counter, for counters are the same in every run. Under Use.
+// Processor time of each stage of the last finished frame, without the wait: for tests and profiles. It is no counter,
+// since counters are equal in every run. Under Use.
 std::vector<scene::StageTime>& host_times_of_last_frame();
 
 class Frame {

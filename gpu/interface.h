@@ -1,4 +1,4 @@
-// What host and shaders of a method agree about: numbers of storage blocks as definitions, layouts of structures.
+// Interface between host and shaders of a method: numbers of storage blocks as definitions, layouts of structures.
 #pragma once
 #include <map>
 #include <string>
@@ -20,7 +20,7 @@ struct Layout {
   const char* variable;
   std::size_t offset, stride;
 };
-// Throws Error if the driver has one of them elsewhere. What the compiler removed is not checked.
+// Throws Error if the driver has one of them at another offset. Members that the compiler removed are not checked.
 void check_layouts(const LinkedProgram&, const std::string& file, const std::vector<Layout>&);
 
 }  // namespace airlight::gpu

@@ -14,12 +14,12 @@ namespace {
 
 std::string refusal(const std::string& files, const char* what, Context& context, const char* log,
                     const ShaderSource& source) {
-  context.forget_errors();  // the same words again
+  context.forget_errors();  // the driver's message would repeat this error
   return fmt::format("{} was {} by {}:\n{}", files, what, context.renderer(), with_file_names(log, source));
 }
 
-// What a driver may have meant by its refusal; empty if the shader stays within the device's storage blocks. Counts what
-// stands in the text, also in branches that definitions left out.
+// A likely reason for a driver's refusal; empty if the shader stays within the device's storage blocks. Counts blocks
+// in the text, also in branches that definitions left out.
 std::string beyond_storage(const std::string& file, GLenum stage, const std::string& text,
                            const std::map<std::string, std::string>& definitions, const Context& context) {
   static const std::regex block(R"(layout\s*\([^)]*binding\s*=\s*(\w+)\s*\)[^;{]*\bbuffer\b)");

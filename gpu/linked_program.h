@@ -1,4 +1,4 @@
-// What compute and raster programs have in common: compiled stages linked together, and uniforms by name.
+// Common part of compute and raster programs: compiled stages linked together, and uniforms by name.
 #pragma once
 #include <map>
 #include <optional>

@@ -1,4 +1,4 @@
-// What shaders read of a scene's reflectances (common/reflection.glsl).
+// A scene's reflectances for shaders (common/reflection.glsl).
 #pragma once
 #include <array>
 #include <vector>

@@ -17,10 +17,10 @@ class Program : public LinkedProgram {
   // dispatches().
   void dispatch(int x, int y = 1, int z = 1);
 
-  // The same with three numbers of groups that the device has left at `offset` of a buffer.
+  // Dispatches three numbers of groups that the device has written at `offset` of a buffer.
   void dispatch_indirect(const Buffer& groups, std::size_t offset);
 
-  // Of all programs of this process so far.
+  // Dispatches of all programs of this process so far.
   static long dispatches();
 
  private:

@@ -14,7 +14,7 @@ class RasterProgram : public LinkedProgram {
   // call. Counted in draws().
   void draw(long vertices, int instances = 1);
 
-  // Of all programs of this process so far.
+  // Draws of all programs of this process so far.
   static long draws();
 };
 

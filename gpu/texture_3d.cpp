@@ -29,7 +29,7 @@ Texture3D::Texture3D(Context& context, const std::string& name, const std::array
   if (fits) gl.TextureStorage3D(id_, 1, format == Format::r32f ? GL_R32F : GL_RGBA32F, size[0], size[1], size[2]);
   const GLenum error = gl.GetError();
   if (!fits || error == GL_OUT_OF_MEMORY) {
-    context.forget_errors();  // the same in the driver's words
+    context.forget_errors();  // the driver's message would repeat this error
     throw Unavailable(fmt::format("gpu: texture '{}' of {} texels needs {:.1f} MiB: {} is out of memory", name,
                                   dimensions, double(bytes()) / (1 << 20), context.renderer()));
   }

@@ -29,7 +29,7 @@ class Texture3D {
 
   // All texels, x fastest. Throws Error if their number is another.
   void upload(const std::vector<float>&);
-  // The same slice after slice along z, so that the processor holds one only: `slice(z, values)` fills one.
+  // Uploads slice after slice along z, so that the host holds only one: `slice(z, values)` fills a slice.
   void upload(const std::function<void(int z, std::vector<float>& values)>& slice);
   std::vector<float> download() const;
 

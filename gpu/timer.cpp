@@ -38,7 +38,7 @@ void StageTimer::begin(const std::string& name) {
   context_.begin_group(name);
 }
 
-// What no stage claims (between the start and the first begin()) is counted to the first.
+// Time before the first begin() belongs to no stage and is added to the first one.
 void StageTimer::end() {
   if (running_.empty()) return;
   context_.end_group();

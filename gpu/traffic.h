@@ -1,4 +1,4 @@
-// What passed between host and device, counted where it is done: a frame's is the difference of two of these.
+// Transfers between host and device, counted where they are done: a frame's traffic is the difference of two of these.
 #pragma once
 #include <map>
 #include <string>
@@ -12,7 +12,7 @@ struct Traffic {
   long dispatches = 0, draws = 0;
   long program_look_ups = 0;  // of programs by file and definitions
 
-  // As a Rendering's counters name them. Those of Prepared::next begin with "next_".
+  // Counters by the names of Rendering::counters. Counters of Prepared::next begin with "next_".
   std::map<std::string, double> counters(const std::string& prefix = "") const {
     return {{prefix + "bytes_up", double(bytes_up)},
             {prefix + "bytes_down", double(bytes_down)},

@@ -1,6 +1,6 @@
-// What a camera sees in front of or behind a medium without being part of the world: a photograph with its depth, snow flakes. Each of
-// its pixels is a radiance at a depth, and ends the camera rays through it. It is not lit, casts no shadow, and nothing but the scene's
-// own camera sees it (camera_end of scene.h).
+// Pictures that a camera sees in front of or behind a medium, without being part of the world: a photograph with its
+// depth, snow flakes. Each pixel is a radiance at a depth, and ends the camera rays through it. A backdrop is not lit,
+// casts no shadow, and only the scene's own camera sees it (camera_end of scene.h).
 #pragma once
 #include <optional>
 #include <string>
@@ -13,8 +13,9 @@ namespace airlight::scene {
 struct Scene;
 struct View;
 
-// As high as the camera's film; pixels are square, its middle column is that of the film. A film that is wider sees its outermost columns
-// go on. Looked up at the nearest pixel: depths on both sides of an edge must not mix.
+// A picture with depth, as high as the camera's film. Pixels are square; the middle column is the middle of the film. A
+// film that is wider than the picture sees the outermost columns repeated. Lookups take the nearest pixel, because
+// depths on both sides of an edge must not mix.
 struct Backdrop {
   int width = 0, height = 0;
   std::vector<float> radiance;  // linear RGB [W/m^2/sr], x fastest, row 0 the top
@@ -32,7 +33,7 @@ std::optional<SeenPoint> seen_along(const Backdrop&, const Camera&, const Ray&);
 // Throws Error unless the view is through the scene's own camera, or the scene has no backdrop.
 void require_own_camera(const Scene&, const View&);
 
-// Of a renderer that does not know them: adds the reason why not, where the scene has one.
+// For renderers without support for backdrops: adds the reason, if the scene has a backdrop.
 void refuse_backdrops(const Scene&, std::vector<std::string>& reasons);
 
 }  // namespace airlight::scene

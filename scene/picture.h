@@ -9,7 +9,7 @@
 
 namespace airlight::scene {
 
-// What a camera ray brings; radiances in [W/m^2/sr].
+// Result of a camera ray; radiances in [W/m^2/sr].
 struct Pixel {
   Rgb airlight = Rgb::Zero();       // scattered towards the viewer by media
   Rgb surface = Rgb::Zero();        // from what ends the ray, through the media
@@ -56,10 +56,12 @@ Tally draw_pixels(const View& view, const Execution& execution, const PictureLay
   });
 }
 
-// What a surface reflects of one light [W/m^2/sr], without media: nothing where it faces away from the light or is in shadow.
+// Light of one lamp that a surface reflects [W/m^2/sr], without media: 0 where the surface faces away
+// from the light or is in shadow.
 Rgb reflected_light(const Scene&, const Hit&, const Vec3& to_view, const Incident&);
 
-// What a surface reflects of all delta lights. `transmittance_to_light(incident, l)` is what media leave of light l on its way.
+// Light of all delta lights that a surface reflects. `transmittance_to_light(incident, l)` is the transmittance of the
+// media on the way of light l.
 template <class Lights, class OfLight>
 Rgb direct_light(const Scene& scene, const Hit& hit, const Vec3& to_view, const Lights& lights,
                  const OfLight& transmittance_to_light) {
@@ -73,8 +75,8 @@ Rgb direct_light(const Scene& scene, const Hit& hit, const Vec3& to_view, const 
   return sum;
 }
 
-// What ends a camera ray sends back, without media between it and the viewer: a lit surface, the background, or nothing from
-// a light's ball. Light that surfaces get from an environment or from each other is left out.
+// Radiance from the end of a camera ray, without media between it and the viewer: a lit surface, the background, or 0
+// from a light's ball. Light that surfaces get from an environment or from each other is left out.
 template <class Lights, class OfLight>
 Rgb end_radiance(const Scene& scene, const Ray& ray, const RayEnd& end, const Lights& lights,
                  const OfLight& transmittance_to_light) {

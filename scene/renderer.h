@@ -1,7 +1,8 @@
-// What methods and references have in common: supports, prepare, render.
+// Common interface of methods and references: supports, prepare, render.
 //
-// `prepare` decides what this scene needs and leaves the rest out; each stage is recorded as kept or left out with the
-// reason (`airlight explain` prints it). What is left out costs nothing: no call, no dispatch, no entry in the times.
+// `prepare` decides what this scene needs and leaves the rest out. Each stage is recorded as kept or
+// left out with the reason (`airlight explain` prints it). A stage that is left out costs nothing: no
+// call, no dispatch, no entry in the times.
 #pragma once
 #include <functional>
 #include <map>
@@ -19,7 +20,8 @@
 namespace airlight::scene {
 class ContentStore;
 
-// What is looked at. Resolution is the view's, so that one Prepared serves several.
+// Camera and resolution of a picture. The resolution belongs to the view, so that one Prepared serves
+// several resolutions.
 struct View {
   Camera camera;
   int width = 0;
@@ -71,7 +73,7 @@ class Prepared {
   virtual std::optional<std::vector<StageTime>> next(std::shared_ptr<const Scene>, const Execution&) { return {}; }
 };
 
-// What Renderer::prepare throws where supports() objects.
+// Thrown by Renderer::prepare if supports() objects.
 class NotSupported : public Error {
  public:
   NotSupported(const std::string& line, std::string reason) : Error(line), reason(std::move(reason)) {}
@@ -91,7 +93,7 @@ class Renderer : public Component {
   std::unique_ptr<Prepared> prepare(std::shared_ptr<const Scene>, const Settings&, const Execution&) const;
 
  private:
-  // Of a scene that supports() has nothing against.
+  // Called for scenes only to which supports() does not object.
   virtual std::unique_ptr<Prepared> prepare_supported(std::shared_ptr<const Scene>, const Settings&,
                                                       const Execution&) const = 0;
 };

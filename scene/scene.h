@@ -1,4 +1,4 @@
-// What is rendered: an immutable value. One camera, lights, media, surfaces.
+// A scene to render, an immutable value: one camera, lights, media, surfaces.
 #pragma once
 #include <map>
 #include <memory>
@@ -38,7 +38,7 @@ using Overrides = std::map<std::string, std::string>;
 // valid key.
 Scene load_scene(const std::string& path, const Overrides& = {});
 
-// The same from text; relative asset names are resolved against `folder`.
+// Reads a scene from text. Relative asset names are resolved against `folder`.
 Scene parse_scene(const std::string& toml, const std::string& name, const std::string& folder, const Overrides& = {});
 
 // Fills geometry and hash of a scene made in code.
@@ -50,7 +50,7 @@ inline bool same_surfaces(const Scene& a, const Scene& b) {
          (a.geometry == b.geometry || (!a.surface_hash.empty() && a.surface_hash == b.surface_hash));
 }
 
-// What ends a ray: a surface hit, a light ball, a backdrop, or nothing (t infinite).
+// The end of a ray: a surface hit, a light ball, a backdrop, or nothing (t infinite).
 struct RayEnd {
   double t = infinity;
   std::optional<Hit> hit;   // set when a surface is first
@@ -58,7 +58,7 @@ struct RayEnd {
   std::optional<Rgb> seen;  // what a backdrop sends from there [W/m^2/sr]; at t = infinity it stands for environments
 };
 RayEnd ray_end(const Scene&, const Ray&);
-// The same of a ray of the scene's own camera, which backdrops end too, where nothing is nearer.
+// The end of a ray of the scene's own camera. Backdrops end such a ray too, where nothing is nearer.
 RayEnd camera_end(const Scene&, const Ray&);
 
 }  // namespace airlight::scene

@@ -1,4 +1,4 @@
-// What a renderer that computes in 32-bit floats (1.2e-38 to 3.4e38) can hold of a scene.
+// Range of scenes that a renderer in 32-bit floats (1.2e-38 to 3.4e38) can hold.
 //
 // Lengths are 1e-4 to 1e6 m, extinction 1e-9 to 1e9 per metre, light 1e-9 to 1e12 (or 0), |g| at most 0.999, so that
 //   (distance/width)^2 of a Gaussian              at most 1e20
@@ -16,7 +16,7 @@
 
 namespace airlight::scene {
 
-// What of the scene lies beyond, one line each; empty: nothing.
+// Values of the scene outside this range, one line each; empty if there are none.
 std::vector<std::string> beyond_single_precision(const Scene&);
 
 }  // namespace airlight::scene

@@ -53,7 +53,7 @@ VoxelGrid read_frame(const FitSequence& s, const std::string& file) {
   return scene::file_ending(file) == ".toml" ? grid_of_medium(file, s.medium) : scene::read_vdb(file, s.grid);
 }
 
-// What a frame was made from, whatever its file is called.
+// Key of the grid that a frame was made from; the name of its file does not count.
 std::string content_of(const VoxelGrid& grid) {
   const auto bytes = [](const auto* data, std::size_t count) {
     return std::string(reinterpret_cast<const char*>(data), count * sizeof *data);
@@ -63,7 +63,7 @@ std::string content_of(const VoxelGrid& grid) {
                       bytes(grid.values.data(), grid.values.size())});
 }
 
-// What would give amplitudes or a residual that no scene may have.
+// Refuses densities that would give amplitudes or a residual that no scene may have.
 void check_densities(const FitSequence& s, const std::string& file, const VoxelGrid& grid) {
   const float greatest = grid.values.empty() ? 0 : *std::max_element(grid.values.begin(), grid.values.end());
   const scene::load::Range& range = scene::load::density_range;
@@ -76,7 +76,7 @@ struct Frame {
   std::string file, name, content;
 };
 
-// What must be known of all frames before the first is fitted.
+// Facts about all frames, collected before the first is fitted.
 struct Survey {
   std::vector<Frame> frames;
   double unit = 0;

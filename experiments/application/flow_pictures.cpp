@@ -35,7 +35,7 @@ std::unique_ptr<scene::Prepared> FlowPictures::prepared_with(const scene::Densit
 
 void FlowPictures::draw(const scene::Flow& flow, const std::string& png) {
   scene::Stopwatch watch;
-  // What lies on a device is drawn from there into a picture that was prepared for something: a flow may begin empty.
+  // A density on the device is drawn from there, into a picture that was prepared before: a flow may begin empty.
   if (const auto there = gpu::legendre_fluids::density_on_device(flow);
       there && !prepared_ && renderer_.name() == drawn_there) {
     const int n = there->coefficients;

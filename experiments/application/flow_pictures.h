@@ -14,8 +14,9 @@ class FlowPictures {
   // Keeps scene, renderer and settings by reference. Throws Error where no medium of the scene extinguishes.
   FlowPictures(const scene::Scene&, const scene::Renderer&, const scene::Settings&, double exposure, int threads);
 
-  // As a PNG. From where flow and picture lie on a device if both are legendre_fluids_gpu, else prepared anew. Throws NotSupported
-  // where the renderer cannot show the flow's density, Error where the file cannot be written.
+  // Draws the flow into a PNG file. If flow and renderer are both legendre_fluids_gpu, the picture is drawn from the
+  // device's data, else it is prepared anew. Throws NotSupported if the renderer cannot show the flow's density, Error
+  // if the file cannot be written.
   void draw(const scene::Flow&, const std::string& png);
   // Draws a frame of an earlier run, of which only the density is known. Errors as above.
   void draw(const scene::DensityField&, const std::string& png);

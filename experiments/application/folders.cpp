@@ -20,7 +20,7 @@ bool is_root(const fs::path& folder) {
   return fs::exists(folder / "experiments" / "README.md", ignored);
 }
 
-// That folder or one above it; empty if none is a project's.
+// The folder, or one above it, that is the root of a project; empty if there is none.
 fs::path root_above(fs::path folder) {
   while (!is_root(folder)) {
     if (folder.empty() || folder == folder.root_path()) return {};

@@ -5,7 +5,7 @@
 
 namespace airlight::experiments {
 
-// What a run of experiments reads and writes. A path alone stands for a project with its default folders.
+// Folders that a run of experiments reads and writes. A path alone stands for a project with its default folders.
 struct Folders {
   // Empty: root/results, root/results/cache.
   Folders(std::filesystem::path root, std::filesystem::path results = {}, std::filesystem::path cache = {});

@@ -14,7 +14,7 @@ inline constexpr int most_json_levels = 32;
 // Throws Error, one line, with the name: too deep, not JSON, or a key that its object has twice.
 nlohmann::json parse_json(const std::string& text, const std::string& name);
 
-// The same of a file; throws Error too where it cannot be read or is too long.
+// Parses a JSON file. Throws Error also if the file cannot be read or is too long.
 nlohmann::json read_json(const std::string& path);
 
 }  // namespace airlight::experiments

@@ -15,7 +15,8 @@ struct Machine {
 };
 Machine this_machine();
 
-// What the threads of this process that live now have used since they began, [s]; zeros where the system does not say.
+// Processor time that the living threads of this process have used since they began [s]; zeros if the
+// system does not say.
 struct ProcessorTime {
   double run = 0;
   double waited = 0;  // ready to run, with no processor free: other work, or more threads than processors

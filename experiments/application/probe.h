@@ -1,5 +1,5 @@
-// What measures something that is no picture: an evaluator's errors, a kernel's rate, vectors that are recomputed. An
-// experiment of kind "numbers" makes a row of each run.
+// A probe measures something that is no picture: an evaluator's errors, a kernel's rate, vectors that are recomputed.
+// An experiment of kind "numbers" makes a row of each run.
 #pragma once
 #include <filesystem>
 #include <map>
@@ -18,7 +18,7 @@ class NoDataFolder : public Unavailable {
   using Unavailable::Unavailable;
 };
 
-// What a probe may be given besides its settings: the file of the experiment's [[scene]], none without one.
+// Input of a probe besides its settings: the file of the experiment's [[scene]]; empty without one.
 struct ProbeInput {
   std::filesystem::path file;
   std::map<std::string, std::string> overrides;  // of a scene file
@@ -42,7 +42,7 @@ struct FigureMap {
 using Columns = std::map<std::string, std::vector<double>>;
 
 struct Findings {
-  std::vector<Measure> figures;  // those of figures() that are defined here, in any order
+  std::vector<Measure> figures;  // the defined ones of figures(), in any order
   std::string note;              // where words are needed
   std::map<std::string, double> counters;
   // Time of what is measured once, where it is one: median and interval by ranks of so many runs [s].
@@ -55,11 +55,11 @@ struct Findings {
 
 class Probe : public scene::Component {
  public:
-  // Names of all that it may find: what an experiment's `metrics`, plots and gates may name.
+  // Names of all figures that the probe may find: an experiment's `metrics`, plots and gates may use these names.
   virtual std::vector<std::string> figures() const = 0;
-  // Those of them that depend on how fast the machine is, beside figures that are named after a unit of time (probes.h).
+  // The figures that depend on the machine's speed, except figures named after a unit of time (probes.h).
   virtual std::vector<std::string> speeds() const { return {}; }
-  // Throws Error for an input that is no good, Unavailable for a device that is not there.
+  // Throws Error for invalid input, Unavailable for a missing device.
   virtual Findings run(const ProbeInput&, const scene::Settings&, const scene::Execution&) const = 0;
 };
 

@@ -64,7 +64,7 @@ void Progress::update(double fraction) {
     say(line);
 }
 
-// What the first second showed of the rest.
+// Extrapolates the remaining time after the first second, and stops if it is above the limit.
 void Progress::hold_to_limit(double fraction, double spent) const {
   if (spent < 1 || scene::time_is_over()) return;
   try {

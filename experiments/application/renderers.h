@@ -12,7 +12,7 @@ const std::vector<std::unique_ptr<scene::Renderer>>& all_renderers();
 
 std::vector<std::string> renderer_names();
 
-// Of the folder reference/, built from scene/ and reference/ alone.
+// Whether the renderer belongs to the folder reference/, which is built from scene/ and reference/ alone.
 bool is_reference(const scene::Renderer&);
 
 // Throws Error, beginning with `where`, that names the nearest renderer.

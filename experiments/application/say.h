@@ -5,8 +5,8 @@
 namespace airlight::experiments {
 
 // "airlight: LINE", as one line whatever the text holds: file names, values and messages of libraries are quoted in it.
-// Of more than 1000 bytes the middle is left out. Where standard error cannot be written, the line is lost; nothing is
-// thrown.
+// A text of more than 1000 bytes is shortened in the middle. If standard error cannot be written, the
+// line is lost and nothing is thrown.
 void say(const std::string& line);
 
 }  // namespace airlight::experiments

@@ -44,8 +44,8 @@ std::string key_of(const Simulation& s) {
 constexpr std::size_t most_bytes = std::size_t(1) << 36;
 std::string checksum_of(const std::string& file) { return content_key(scene::read_whole_file(file, most_bytes)); }
 
-// What `state` begins with: key, last frame and files of coefficients of each, then a checksum and a name for each file that is complete.
-// Particles and flow follow, then a checksum of all that.
+// Head of `state`: key, last frame, and files of coefficients of each frame; then a checksum and a name for each
+// complete file. Particles and flow follow, then a checksum of everything.
 struct Kept {
   std::string key, bytes, files;  // files: those lines
   int last = -1, coefficients = 0;
@@ -98,7 +98,7 @@ class Folder {
     return all;
   }
 
-  // What `state` says, if all files are as they were written: nothing where there is no state. Throws Error.
+  // The content of `state`, if all files are as they were written; nothing if there is no state. Throws Error.
   std::optional<Kept> verified() {
     if (!fs::exists(at("state"))) return std::nullopt;
     Kept kept = read_state(at("state"));

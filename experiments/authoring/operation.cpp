@@ -220,7 +220,7 @@ void at_operation(const std::string& where, const std::function<void()>& body) {
   try {
     body();
   } catch (const Error& e) {
-    // What an operation itself complains about does not know where it stands.
+    // An operation's own error messages do not know the position in the script.
     const std::string what = e.what();
     if (what.compare(0, where.size(), where) == 0) throw;
     throw Error(fmt::format("{}: {}", where, what), e.exit_code());

@@ -13,7 +13,7 @@
 
 namespace airlight::experiments::authoring {
 
-// What a script has made.
+// Result of a script.
 struct Authored {
   fogshop::authoring::GaussianList list;
   std::string base;                              // path of the base scene; empty if there is none

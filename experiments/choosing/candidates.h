@@ -1,4 +1,4 @@
-// What could render a scene: the rows of an experiment, whatever scenes it has them on.
+// Candidates to render a scene: the rows of an experiment, for any of its scenes.
 #pragma once
 #include <string>
 #include <vector>
@@ -23,7 +23,8 @@ std::vector<Candidate> candidates_of(const Experiment&);
 // The line that renders the scene so: "airlight render SCENE -m NAME --set ... -o picture.exr". Threads: 0 for all.
 std::string command_line(const Candidate&, const std::string& scene_file, const Pairs& overrides, int threads = 0);
 
-// What the picture lacks by the method's own account, in short: "orders of scattering above one". Empty: nothing that it tells of.
+// Parts of the light that the method leaves out by its own account, in short: "orders of scattering
+// above one". Empty if it names none.
 std::string left_out(const scene::Renderer&, const std::vector<scene::Stage>&);
 
 }  // namespace airlight::experiments

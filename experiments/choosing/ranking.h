@@ -1,4 +1,4 @@
-// Which of the tried candidates to take, and how sure that is.
+// Choice among the tried candidates, and the confidence in it.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace airlight::experiments {
 
-// What errors are compared by. Where noise hides an error: half of what it may be.
+// Error for comparisons. If noise hides an error: at least half of its upper end.
 double likely(const Measure& error);
 
 // By trials' addresses; those without figures are in none of the lists.

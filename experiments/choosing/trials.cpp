@@ -242,7 +242,7 @@ bool Trials::attempt(Trial& trial, const std::function<void()>& work) {
   try {
     if (left() <= 0) throw scene::Interrupted("no time is left");
     work();
-    // What was stopped may have been timed as if it was done.
+    // A stopped render may have been timed as if it was complete.
     if (steady_seconds() >= deadline_) throw scene::Interrupted("no time is left");
     return true;
   } catch (const scene::Interrupted&) {

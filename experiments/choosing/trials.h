@@ -1,4 +1,4 @@
-// What candidates cost and how far they err in one scene: on its own film where that is cheap or worth it, else on a small one.
+// Times and errors of candidates in one scene: on its own film if that is cheap or worth it, else on a small one.
 #pragma once
 #include <functional>
 #include <memory>
@@ -12,7 +12,8 @@
 
 namespace airlight::experiments {
 
-// What moves at once from one frame to the next. Empty: a still from nothing, whose time has the conversion and the preparation in it.
+// Parts of the scene that move from one frame to the next. Empty: a still from nothing, whose time
+// includes conversion and preparation.
 using Moves = std::vector<Moving::What>;
 
 // One of the two.
@@ -40,7 +41,8 @@ struct Trial {
   bool done() const { return !times.empty(); }
 };
 
-// What may take this many times the time allowed, by the small film, is tried on the scene's own.
+// A candidate whose time or error on the small film is up to this factor above the goal is tried on the
+// scene's own film.
 inline constexpr double worth_trying = 1.25;
 
 class Trials {

@@ -10,7 +10,7 @@
 
 namespace airlight::experiments::cli {
 
-// What all commands share: the line's parser, options that several of them take, and what the chosen command does.
+// Shared state of all commands: the parser, options that several commands take, and the action of the chosen command.
 struct Commands {
   Commands();
 

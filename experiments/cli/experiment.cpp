@@ -31,7 +31,7 @@ struct ExperimentOptions {
   std::vector<std::string> names;
   bool resume = false;
   bool gates_only = false;        // experiments without gates are left out
-  bool in_tests = false;          // likewise those without in_tests = true
+  bool in_tests = false;          // experiments without in_tests = true are left out
   bool margins = false;           // how far each gate is from failing
   bool fresh_references = false;  // first makes all committed references of these experiments anew
   int threads = 0;
@@ -52,7 +52,7 @@ Folders folders_of(const ExperimentOptions& options) {
   return {project_root(options.root), options.results, options.cache};
 }
 
-// As a user would type it.
+// The path as a user would type it.
 std::string shown(const Folders& folders, const std::string& name) {
   return ((folders.default_results() ? "results" : folders.results) / name).string();
 }
@@ -84,7 +84,7 @@ std::vector<Experiment> read_and_check(const ExperimentOptions& options, const F
     check_interrupted();
     try {
       RunOptions check{folders, resume, options.threads, false};
-      // Of all experiments they would take a third of the time, and the run itself tells what they would.
+      // Trials of all experiments would take a third of the run's time, and the run itself reports the same errors.
       check.trials = !options.in_tests && !options.names.empty();
       check_experiment(e, check);
     } catch (const Error& error) {
@@ -234,7 +234,7 @@ int plot_experiments(const ExperimentOptions& options) {
 int judge_gates(const ExperimentOptions& options, std::vector<GateResult>& results) {
   check_profile(options);
   const Folders folders = folders_of(options);
-  // What an earlier run of this very program finished is not computed again.
+  // Rows that an earlier run of this program finished are not computed again.
   const std::vector<Experiment> experiments = read_and_check(options, folders, true);
   RunProgress progress(planned_work(experiments, folders.root / "results"), RunProgress::standard_streams(false));
   for (std::size_t i = 0; i < experiments.size(); ++i) {
@@ -271,7 +271,7 @@ int gates(const ExperimentOptions& options) {
   try {
     return judge_gates(options, results);
   } catch (const Error& error) {
-    // What ends the command says nothing about accuracy: an error beside the gates that were judged.
+    // An error that ends the command says nothing about accuracy: it is reported beside the gates that were judged.
     if (!options.junit.empty()) write_junit(options.junit, results, error.what());
     throw;
   } catch (const scene::Interrupted& stop) {
@@ -295,7 +295,7 @@ void add_results(CLI::App* c, ExperimentOptions& options) {
       ->type_name("FOLDER");
 }
 
-// Of what runs experiments.
+// Adds the options of commands that run experiments.
 void add_run(Commands& commands, CLI::App* c, ExperimentOptions& options) {
   add_selection(c, options);
   add_results(c, options);

@@ -115,7 +115,7 @@ int run(int argc, char** argv) {
     say("out of memory");
     return 2;
   } catch (const std::exception& error) {
-    // What prints to a stream that fails throws an exception of the system's.
+    // Printing to a stream that fails throws a system exception.
     say(std::ferror(stdout) ? lost_output : fmt::format("unexpected failure: {}", error.what()));
     return 2;
   }

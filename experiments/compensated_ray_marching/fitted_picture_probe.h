@@ -1,4 +1,4 @@
-// What a picture loses when smoke becomes Gaussians and a quantised residual.
+// Error of pictures when smoke is converted to Gaussians and a quantised residual.
 #pragma once
 #include "experiments/application/probe.h"
 

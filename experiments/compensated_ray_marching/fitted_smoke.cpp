@@ -103,7 +103,7 @@ scene::VoxelGrid stirred_noise(int n, double time, int octaves) {
   });
 }
 
-// Of all that a fit depends on.
+// Content key of everything that a fit depends on.
 std::string key_of(const scene::VoxelGrid& grid, int count) {
   scene::load::ContentHash hash;
   scene::load::add(hash, grid);

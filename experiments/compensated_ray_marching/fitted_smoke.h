@@ -9,8 +9,8 @@ namespace airlight::experiments {
 // The voxels of the first medium of the probe's scene that has some. Throws Error if there is none.
 scene::VoxelGrid grid_of_scene(const ProbeInput&);
 
-// A column of smoke that billows, n^3 samples of a cube of 1 m: fractal noise, its places displaced by a curl. The same for every n. With
-// time [s] the noise rises through it, 1 m/s. The finest of four octaves has 48 cells to the side.
+// A column of billowing smoke, n^3 samples of a cube of 1 m: fractal noise, displaced by a curl field. The shape does
+// not depend on n. With time [s] the noise rises at 1 m/s. The finest of four octaves has 48 cells to the side.
 scene::VoxelGrid noise_smoke(int n, double time = 0, int octaves = 4);
 
 // A ball of smoke, stirred by a curl, that thins out smoothly (squared) towards its edge; n^3 samples of a cube of 1 m, an eighth filled. With

@@ -61,8 +61,8 @@ double unit_of(const ProbeInput& input, const scene::Settings& s) {
   return voxel * std::cbrt((hi - lo).prod());
 }
 
-// What changes from one frame to the next, in the density and in what the fit leaves of it: sums of squares over the samples that either
-// frame has, on the lattice that both share.
+// Change from one frame to the next, in the density and in the residual of the fit: sums of squares over the samples
+// that either frame has, on the lattice that both share.
 class Flicker {
  public:
   void add(const VoxelGrid& grid, const GaussianFit& fit) {
@@ -128,7 +128,7 @@ struct Stores {
   }
 };
 
-// What is known of the fits, frame by frame; times [s] of the first frame and of later ones.
+// Statistics of the fits, frame by frame; times [s] of the first frame and of later ones.
 struct Fits {
   std::vector<double> squared, rms, rms_filled, max, filled, evaluations, iterations, teleported, count, first, later;
   std::vector<double> widths;  // of all Gaussians, in units

@@ -55,7 +55,7 @@ Positions consecutive_positions(const Vector3i& size, int count) {
   return positions;
 }
 
-// What is stored, and where it is looked up.
+// The residual to store, and the positions of lookups.
 struct Task {
   Vector3i size;
   std::vector<std::int8_t> levels;

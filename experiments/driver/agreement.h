@@ -43,7 +43,7 @@ std::string text(const Agreement&, const std::string& name);
 // The rows of a record (run.json), as compare_tables needs them; nothing where there is none. Throws Error.
 std::optional<std::vector<Row>> recorded_rows(const std::filesystem::path& record);
 
-// Of a run with the table of the same name below `results`; nothing where that has none.
+// Compares a run with the table of the same name below `results`; nothing if there is no such table.
 std::optional<Agreement> agreement_with(const std::filesystem::path& results, const Outcome&);
 
 }  // namespace airlight::experiments

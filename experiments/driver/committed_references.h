@@ -2,8 +2,8 @@
 // for them with `committed_references = true` in a profile (experiments/README.md).
 //
 // The key is the content of scene, film size, renderer, settings and layer. Unlike the cache (reference_cache.h) it
-// leaves out the program's sources, compiler and device: another build reads the same film. What a change of the program
-// would do to it, a test watches: it renders a few samples of each film anew and compares.
+// leaves out the program's sources, compiler and device: another build reads the same film. A test watches for changes
+// of the program that would change a film: it renders a few samples of each film anew and compares.
 #pragma once
 #include <filesystem>
 #include <memory>
@@ -31,7 +31,7 @@ struct CommittedReference {
 std::filesystem::path committed_file(const std::filesystem::path& folder, const scene::Scene&, const scene::Renderer&,
                                      const scene::Settings&, const std::string& layer);
 
-// Those of the experiments given, each once. Loads their scenes.
+// The references that these experiments ask for, each once. Loads the experiments' scenes.
 std::vector<CommittedReference> committed_references(const std::vector<Experiment>&);
 
 bool is_committed(const std::filesystem::path& file);

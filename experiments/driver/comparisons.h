@@ -1,4 +1,4 @@
-// What is read off several rows together: who is on the front, who is faster at equal error or closer at equal time.
+// Results that compare several rows: the front, and speed-ups at equal error and error ratios at equal time.
 #pragma once
 #include <string>
 #include <vector>
@@ -25,8 +25,8 @@ std::optional<Estimate> speed_up_at_equal_error(const Outcome&, const SpeedUpCas
 // former. At any error that the baseline reaches the method is at least so many times faster.
 std::optional<double> least_speed_up(const Outcome&, const SpeedUpCase&, const std::string& scene);
 
-// Of flows: for each scene, method and error of at least two rows at rising numeric settings, the order p with which the
-// error falls as setting^-p from each to the next. Header only where there is none.
+// Orders of convergence of flows, for each scene, method and error of at least two rows at rising numeric settings: the
+// order p with which the error falls as setting^-p from each row to the next. Only a header if there are none.
 TextTable orders(const Outcome&);
 
 // A line where processors were not free for more than a tenth of the threads' time in some row's timed runs; else

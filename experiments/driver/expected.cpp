@@ -41,7 +41,7 @@ std::optional<Found> find_figure(const Outcome& outcome, const ExpectedCase& e) 
   return std::nullopt;
 }
 
-// What the figure is in: s, ms, ns, percent; "share" of 1; "times", a ratio; empty for all else.
+// Unit of the figure: s, ms, ns, percent; "share" of 1; "times", a ratio; empty for all else.
 std::string own_unit(const ExpectedCase& e) {
   if (!e.baseline.empty()) return "times";
   const std::string& metric = e.metric;

@@ -1,4 +1,5 @@
-// What a paper prints beside what we measured ([[expected]]), and the sentence for people that quotes it (summary).
+// Values that a paper prints, beside our measurements ([[expected]]), and the sentence for people that
+// quotes them (summary).
 #pragma once
 #include <functional>
 #include <string>

@@ -125,7 +125,7 @@ struct Experiment {
   std::vector<ExpectedCase> expected;
 };
 
-// What judges the scene.
+// The reference that judges the scene.
 const ReferenceCase& reference_of(const Experiment&, const SceneCase&);
 
 // Throws Error: file:line:column, what was found, what was expected, nearest valid key. Settings, metrics, renderers,

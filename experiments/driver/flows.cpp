@@ -26,7 +26,7 @@ namespace {
 
 using ProblemPointer = std::shared_ptr<const scene::FlowProblem>;
 
-// What all rows of a problem share.
+// Data shared by all rows of a problem.
 struct JudgedFlow {
   ProblemPointer problem;
   std::vector<FlowMetric> metrics;      // in the order of the experiment's
@@ -222,7 +222,7 @@ MadeRow make_row(const Experiment& e, std::shared_ptr<const JudgedFlow> judged, 
   if (!row.note.empty()) return {row, 0, {}};
   row.counters["simulated seconds"] = judged->problem->duration;
   row.counters["MiB"] = std::max(0.0, 1024 * (resident_gib() - before));
-  // What starts for the first time may compile shaders: that is no step.
+  // The first start may compile shaders: this time does not count as a step.
   row.prepare_seconds = first.start;
   return {row, first.steps, flow->times(), {}, [judged, solve, last](const scene::Execution& quiet) {
             std::unique_ptr<scene::Flow> again;

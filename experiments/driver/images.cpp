@@ -21,7 +21,7 @@
 namespace airlight::experiments {
 namespace {
 
-// What all rows of a scene share.
+// Data shared by all rows of a scene.
 struct Judged {
   PlannedScene planned;
   scene::View view;

@@ -27,7 +27,7 @@ namespace airlight::experiments {
 namespace fs = std::filesystem;
 namespace {
 
-// What is held ready at once, so that the runs of several rows can take turns.
+// Limits on the rows that are held ready at once, so that their timed runs can take turns.
 constexpr std::size_t most_held = 16;
 constexpr double most_held_gib = 2;
 
@@ -41,7 +41,7 @@ bool is_text_of(const fs::path& file, const std::string& text) {
   return in && std::string(std::istreambuf_iterator<char>(in), {}) == text;
 }
 
-// Of an experiment that is run alone.
+// Progress of an experiment that is run alone.
 std::unique_ptr<RunProgress> progress_of(const Experiment& e, const RunOptions& options) {
   auto streams = RunProgress::standard_streams(false);
   if (!options.talk) streams.lines = nullptr;
@@ -113,7 +113,7 @@ std::size_t RowKeeper::row_count() const {
 
 double RowKeeper::row_work() const { return progress_.work_of_rows() / double(row_count()); }
 
-// Which part of a row's time its timed runs are is not recorded: half.
+// The share of timed runs in a row's time is not recorded: half is assumed.
 double RowKeeper::making_work() const {
   const bool timed = experiment().kind->times_rows() && experiment().timing.budget > 0;
   return timed ? row_work() / 2 : row_work();

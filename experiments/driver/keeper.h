@@ -48,14 +48,14 @@ class RowKeeper {
 
   const std::vector<Row>& rows() const { return outcome_.rows; }  // of the scenes that are finished
 
-  // As run_experiment.
+  // Runs the plan like run_experiment.
   Outcome run(const Plan&);
 
  private:
   struct Held;  // a row that was made, and waits for its timed runs
   std::size_t row_count() const;
   double row_work() const;  // [s] as planned, of one row
-  // Of that the part before the timed runs.
+  // The part of row_work before the timed runs.
   double making_work() const;
   bool has_picture(const Row&) const;
   void measure(std::vector<RowPlan>);

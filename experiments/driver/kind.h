@@ -36,7 +36,7 @@ class ExperimentKind {
   virtual bool needs_reference(const std::string&, const std::string&) const { return false; }  // metric, position
   virtual bool needs_scene() const { return true; }
   virtual bool draws_pictures() const { return false; }
-  // What a row may have for time, by name.
+  // Names of a row's possible times.
   virtual std::vector<std::string> times() const { return {"seconds", "prepare_seconds", "total_seconds"}; }
 
   // Loads every scene, and tries what check_experiment (run.h) says. Throws Error.

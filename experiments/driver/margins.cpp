@@ -49,7 +49,7 @@ double margin(const GateResult& gate) {
 std::string margins_text(const std::vector<GateResult>& gates) {
   std::vector<const GateResult*> order;
   for (const GateResult& gate : gates) order.push_back(&gate);
-  // Those without a ratio last.
+  // Gates without a ratio come last.
   const auto place = [](const GateResult& gate) { return std::isnan(margin(gate)) ? -1 : margin(gate); };
   std::stable_sort(order.begin(), order.end(),
                    [&](const GateResult* a, const GateResult* b) { return place(*a) > place(*b); });

@@ -17,8 +17,8 @@ double margin(const GateResult&);
 // are of which ratio.
 std::string margins_text(const std::vector<GateResult>&);
 
-// The same for programs: ratio, at_most or at_least, bound, measured, low, high, kind, result (ok, skipped, FAILED),
-// experiment, scene, method, setting, metric, position of the [[gate]] in its file. What is not defined is empty.
+// The margins as CSV: ratio, at_most or at_least, bound, measured, low, high, kind, result (ok, skipped, FAILED),
+// experiment, scene, method, setting, metric, position of the [[gate]] in its file. Undefined values are empty.
 std::string margins_csv(const std::vector<GateResult>&);
 
 }  // namespace airlight::experiments

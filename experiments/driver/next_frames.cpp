@@ -259,7 +259,7 @@ void FramesAfter::go_to(std::shared_ptr<const Scene> other, const scene::View& v
 double FramesAfter::one(scene::View view, const scene::Execution& execution) {
   std::swap(now_, other_);
   const double start = steady_seconds();
-  // What a preparation without next() holds is the same for every camera.
+  // A preparation without next() is equal for every camera.
   const bool camera_alone = now_->matter_hash == other_->matter_hash && now_->light_hash == other_->light_hash;
   if (!prepared_->next(now_, execution) && !camera_alone) {
     prepared_ = renderer_.prepare(now_, settings_, execution);

@@ -1,4 +1,4 @@
-// What a run of an experiment found: rows, what they were compared with, gates.
+// Outcome of an experiment's run: rows, their references, gates.
 #pragma once
 #include <optional>
 #include <string>
@@ -15,7 +15,7 @@ struct ReferenceInfo {
   bool cached = false;
   double exposure = 0;
   std::string samples;  // that a Monte Carlo reference has: a cache may hold more than were asked for
-  // Of a committed film: its file below the project's root, the program that made it, and what the file keeps of it.
+  // For a committed film: its file below the project's root, the program that made it, and what the file keeps of it.
   std::string committed = {}, program = {}, kept = {};
 };
 
@@ -24,7 +24,7 @@ struct GateResult {
   std::string text;  // with figures
   bool passed = false;
   bool skipped = false;  // neither passed nor failed: the row is unavailable on this machine
-  // What margins.h lists.
+  // Columns of margins.h.
   std::string scene = {}, method = {}, setting = {}, metric = {};  // empty where the gate judges no row
   std::string position = {};                                       // of the [[gate]]: file:line:column
   std::string kind = {};                                           // "deterministic", "Monte Carlo", "counter", "time"

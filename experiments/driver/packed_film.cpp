@@ -31,7 +31,7 @@ struct Scatter {
   double mean = 0, deviation = 0;
 };
 
-// Of value i over the batches; a deviation of 0 only where all are equal.
+// Mean and deviation of value i over the batches. The deviation is 0 only if all are equal.
 template <class Batches>
 Scatter scatter(const Batches& batches, std::size_t i) {
   const double n = double(batches.size());

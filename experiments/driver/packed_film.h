@@ -1,12 +1,12 @@
 // A reference film made small enough to be committed: one layer, and what its errors and intervals need.
 //
-// A film without noise keeps the layer exactly. Of a noisy film the metrics need the sixteen batches (batches.h), whose
-// last digits are noise. A batch is stored as a whole number k of steps: base + (k + 1/2 - u) step. The step of a value is
-// the largest power of two that is not above the scatter of its batches. The number u in (0, 1) is random, but depends on
-// pixel and batch alone, so that reading finds it again (subtractive dither). The rounding error is then uniform over one
-// step and independent of the batch and of the other batches. It acts as if there were a few samples less: it adds 2.1 to
-// 8.3 % to the variance (4.5 % on average) and no bias. The stored batches show it, so intervals, noise floors and tests of
-// equality include it.
+// A film without noise keeps the layer exactly. For a noisy film the metrics need the sixteen batches (batches.h),
+// whose last digits are noise. A batch is stored as a whole number k of steps: base + (k + 1/2 - u) step. The step of a
+// value is the largest power of two that is not above the scatter of its batches. The number u in (0, 1) is random, but
+// depends on pixel and batch alone, so that reading finds it again (subtractive dither). The rounding error is then
+// uniform over one step and independent of the batch and of the other batches. Its effect is that of a few samples
+// less: it adds 2.1 to 8.3 % to the variance (4.5 % on average) and no bias. The stored batches show it, so intervals,
+// noise floors and tests of equality include it.
 //
 // Values whose batches are all equal are kept exactly, with their standard error (an upper end, batches.h).
 #pragma once

@@ -67,7 +67,7 @@ std::string row_key(const Experiment& e, const MethodCase& m, const scene::Compo
 
 namespace {
 
-// What conversions make of a scene, each once.
+// Converted media of a scene, each converted once.
 class Conversions {
  public:
   Conversions(std::shared_ptr<const scene::Scene> scene, const Experiment& e, const scene::ContentStore& store)

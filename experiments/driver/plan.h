@@ -1,4 +1,4 @@
-// What an experiment comes down to on one scene, before anything is rendered or written.
+// Plan of an experiment on one scene, before anything is rendered or written.
 #pragma once
 #include <memory>
 #include <optional>
@@ -32,20 +32,19 @@ struct PlannedScene {
 // Loads the scene; no rows. Throws Error (file, line, what was found) for a scene or override that is no good.
 PlannedScene plan_reference(const Experiment&, const SceneCase&);
 
-// With the rows. A row's key is the content of all that its figures and times depend on: scene, method, reference,
-// metrics, rule of timing; sources, compiler and libraries of the program; processor and threads; the device, and its
-// shaders where they come from AIRLIGHT_SHADERS. Throws Error (file, line, what was found) for a scene or override that
-// is no good.
-// What a conversion makes of its media is kept in the store.
+// Plans a scene with its rows. A row's key is the content of all that its figures and times depend on: scene, method,
+// reference, metrics, rule of timing; sources, compiler and libraries of the program; processor and threads; the
+// device, and its shaders if they come from AIRLIGHT_SHADERS. Throws Error (file, line, what was found) for an invalid
+// scene or override. Converted media are kept in the store.
 PlannedScene plan_scene(const Experiment&, const SceneCase&, const scene::ContentStore&);
 // Plans a scene that is loaded, such as one picture of a sequence.
 PlannedScene plan_scene(const Experiment&, const SceneCase&, std::shared_ptr<const scene::Scene>,
                         const scene::ContentStore&);
 
-// What the file says of a row, and the content of its scene.
+// A row as the file describes it, with the content hash of its scene.
 Row row_of(const SceneCase&, const MethodCase&, const scene::Settings&, const std::string& scene_hash);
 
-// Of a row whose names, settings and hashes are known.
+// Key of a row whose names, settings and hashes are known.
 std::string row_key(const Experiment&, const MethodCase&, const scene::Component&, const Row&);
 
 // Pixels of the view whose ray sees more than 1e-3 of the media, from the media themselves.

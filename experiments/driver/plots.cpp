@@ -47,7 +47,7 @@ struct Drawing {
 
 bool is_column(const std::string& axis) { return axis.starts_with("column."); }
 
-// Of two columns of a row: all its points, in their order.
+// A curve of two columns of a row: all its points, in their order.
 std::optional<Curve> curve_of_columns(const Row& row, const PlotCase& plot, const std::string& scene) {
   const auto x = row.columns.find(plot.x.substr(7)), y = row.columns.find(plot.y.substr(7));
   if (x == row.columns.end() || y == row.columns.end()) return std::nullopt;
@@ -84,7 +84,7 @@ Drawing collect(const Outcome& outcome, const PlotCase& plot, const std::string&
     if (!x || !y || !(x->value > 0)) continue;
     PlotPoint point{*x, *y, false};
     if (const Measure* m = measure_of(row, plot.y)) {
-      // That of the reference alone: the quietest image shows it.
+      // The noise floor of the reference alone: the least noisy image shows it.
       if (m->floor > 0) drawing.floor = drawing.floor > 0 ? std::min(drawing.floor, m->floor) : m->floor;
       point.bound = m->below_floor;
       if (plot.y == "bias" || plot.y.find(".bias") != std::string::npos) {

@@ -20,11 +20,12 @@ struct RunOptions {
   bool trials = true;               // check_experiment renders small pictures; false: it loads and plans alone
 };
 
-// Whether the experiment can be computed as its file says, found out before anything is written: simulates the sequences that its scenes
-// show, loads every scene with its overrides, and tries everything that is not finished on a film of at most 8x8 pixels: the reference on
-// every scene, each method on the first scene it is on; then the metrics, on the layers that they look at. With options.resume, rows of an
-// earlier run count as finished. Throws Error in one line that begins with the experiment. What this machine lacks is not tried. Without
-// options.trials everything is loaded and planned, nothing rendered.
+// Checks before anything is written whether the experiment can be computed as its file says. Simulates
+// the sequences that its scenes show and loads every scene with its overrides. Tries everything that is
+// not finished on a film of at most 8x8 pixels: the reference on every scene, each method on its first
+// scene, then the metrics, on the layers that they use. With options.resume, rows of an earlier run
+// count as finished. Throws Error in one line that begins with the experiment. Parts that this machine
+// lacks are not tried. Without options.trials everything is loaded and planned, nothing rendered.
 void check_experiment(const Experiment&, const RunOptions&);
 
 // Writes below folders.results (results_name) and folders.cache. Throws Error, and writes nothing, where check_experiment objects.

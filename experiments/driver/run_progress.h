@@ -28,7 +28,7 @@ class RunProgress {
   explicit RunProgress(std::vector<PlannedWork>, const Streams& = standard_streams(true));
   ~RunProgress();
 
-  // The next experiment begins, or all have ended. What was left of the work of the one before need not be done.
+  // The next experiment begins, or all have ended. The remaining work of the previous one is dropped.
   void begin(std::size_t experiment);
   void end();
 

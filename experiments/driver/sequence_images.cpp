@@ -32,7 +32,7 @@ std::shared_ptr<const scene::Scene> picture_scene(const SceneCase& c, int pictur
   return scene;
 }
 
-// What all rows of a sequence share.
+// Data shared by all rows of a sequence.
 struct Judged {
   std::vector<PlannedScene> planned;
   std::vector<scene::View> views;

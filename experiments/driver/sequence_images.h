@@ -29,7 +29,8 @@ class SequenceImages final : public Images {
 // The pictures below each other, as one film of the layers that all of them have.
 scene::Film stacked(const std::vector<scene::Film>&);
 
-// What each picture has more than the one before, in the layer and its batches, below each other. Throws Error for fewer than two.
+// Differences between each picture and the previous one, in the layer and its batches, stacked
+// vertically. Throws Error for fewer than two.
 scene::Film changes(const std::vector<scene::Film>&, const std::string& layer);
 
 // Size of a film's changes over its own, of noisy ones without their noise: 0 where nothing moves.

@@ -1,5 +1,5 @@
-// What a run leaves in results/<group>/<name>/: table.csv (all figures), summary.csv and table.md (for people),
-// run.json (the record). Written whole or not at all. experiments/README.md describes them.
+// Files of a run in results/<group>/<name>/: table.csv (all figures), summary.csv and table.md (for people), run.json
+// (the record). They are written whole or not at all. experiments/README.md describes them.
 #pragma once
 #include <map>
 #include <string>

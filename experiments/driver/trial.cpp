@@ -17,7 +17,8 @@ namespace {
 
 constexpr int most_pixels = 8;  // a side
 
-// As few samples as show the same layers: those beyond whole blocks decide whether there are equal batches.
+// Uses the fewest samples that give the same layers: samples beyond whole blocks decide whether there
+// are equal batches.
 scene::Settings short_settings(const scene::Renderer& renderer, Pairs given, const scene::Settings& whole) {
   if (renderer.monte_carlo()) {
     const long long samples = whole.integer("samples");

@@ -1,4 +1,4 @@
-// What a film says about its own noise: sixteen equal groups of samples, stored as layers.
+// A film's own noise: sixteen equal groups of samples, stored as layers.
 //
 // `mean` has layers batch.00, batch.01, ...; another layer L has L.batch.00, ... A film with neither batches nor a
 // standard error is exact. Few samples make no batches: then there is only the standard error of each value, `se` or

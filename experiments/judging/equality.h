@@ -40,10 +40,10 @@ inline constexpr double most_skewness = 0.1;
 Equality compare_equal(const scene::Film& a, const scene::Film& b, const std::string& layer,
                        const std::vector<unsigned char>& left_out, double alpha);
 
-// How many of the three tests object at that alpha; a block that differs without noise counts with the first.
+// How many of the three tests object at this alpha. A block that differs without noise counts with the first test.
 int objections(const Equality&, double alpha);
 
-// Those among them whose means are in range.
+// The number of objections by tests whose means are in range.
 int sure_objections(const Equality&, double alpha);
 
 // One line for people.

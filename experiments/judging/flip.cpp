@@ -98,7 +98,8 @@ Taps gaussian(Eigen::Index radius, double variance) {
   return (-x.square() / (2 * variance)).exp();
 }
 
-// What the eye resolves of each of the three channels (contrast sensitivity, 2020, equation 1 and table 1), in linear RGB.
+// Filters each of the three channels by the eye's resolution (contrast sensitivity, 2020, equation 1 and
+// table 1); returns linear RGB.
 Picture seen(const Picture& yxz, double ppd) {
   struct Lobe {
     double a, b;
@@ -143,7 +144,7 @@ Features features(const Plane& lightness, double ppd) {
   return {size(-x * g), size((x.square() / (sd * sd) - 1) * g)};
 }
 
-// What is compared of one picture at one exposure.
+// Values of one picture at one exposure that are compared.
 struct Seen {
   Picture color;
   Features features;

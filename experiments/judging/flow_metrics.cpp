@@ -37,7 +37,7 @@ double rel_l2(const std::vector<double>& a, const std::vector<double>& r) {
   return norm > 0 ? std::sqrt(difference / norm) : undefined;
 }
 
-// Of vectors of `width` numbers.
+// Greatest difference over the greatest norm, for vectors of `width` numbers.
 double greatest(const std::vector<double>& a, const std::vector<double>& r, std::size_t width) {
   double difference = 0, norm = 0;
   for (std::size_t i = 0; i < a.size(); i += width) {

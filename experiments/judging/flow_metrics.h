@@ -1,11 +1,11 @@
-// What flows are judged by: names, and what they say of one flow at one time.
+// Metrics of flows: names, and their values for one flow at one time.
 //
-// Of the flow at the end, or at the time that a suffix names ("density.rel_l2@0.5", in seconds, a frame's):
+// Metrics of the flow at the end, or at the time that a suffix names ("density.rel_l2@0.5", in seconds, a frame's):
 //
 //   velocity.rel_l2    sqrt(sum |u - r|^2 / sum |r|^2) over the samples, r the reference; also density. and temperature.
 //   velocity.greatest  greatest |u - r| over the greatest |r|; also density. and temperature.
 //
-// Of its own samples:
+// Metrics of the flow's own samples, without a reference:
 //
 //   density.contrast   standard deviation of the density over that at the start: of a wave, what is left of its amplitude
 //   density.asymmetry  greatest difference from its mirror image, along x and, in three dimensions, z, over the greatest
@@ -52,7 +52,7 @@ struct FlowSample {
 std::vector<Point3> sample_points(const scene::FlowProblem&);
 FlowSample sample(const scene::Flow&, const std::vector<Point3>&);
 
-// What is known of a flow up to a frame: the totals of each, and its samples.
+// Data of a flow up to a frame: the totals of each frame, and the samples of the last.
 struct FlowMoment {
   std::vector<scene::Totals> totals;
   FlowSample here;

@@ -81,7 +81,7 @@ std::optional<Gain> gain(const std::vector<Knot>& baseline, const std::vector<Kn
 const Point& fastest(const std::vector<Point>& points) { return points[by_time(points).front()]; }
 const Point& slowest(const std::vector<Point>& points) { return points[by_time(points).back()]; }
 
-// Of those with the least error the fastest.
+// The fastest of the points with the least error.
 const Point& closest(const std::vector<Point>& points) {
   return *std::min_element(points.begin(), points.end(), [](const Point& a, const Point& b) {
     return a.error.value != b.error.value ? a.error.value < b.error.value : a.time.value < b.time.value;

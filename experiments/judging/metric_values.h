@@ -41,7 +41,7 @@ class Values {
   double d(std::size_t i, int b) const { return a(i, b) - r(i, b); }
   double se(std::size_t i) const { return se_[index_[i]]; }
   double samples(std::size_t i) const;  // behind that; infinite if not known
-  // What the batches of both cannot show (batches.h).
+  // Noise that the batches of either film cannot show (batches.h).
   bool has_unresolved() const { return !a_unresolved_.empty() || !r_unresolved_.empty(); }
   double unresolved(std::size_t i) const;
   std::size_t channel(std::size_t i) const { return index_[i] % 3; }

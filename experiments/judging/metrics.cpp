@@ -110,7 +110,8 @@ double signed_bias(const Values& v, int without) {
 
 std::vector<double> ones(const Values& v) { return std::vector<double>(v.size(), 1.0); }
 
-// Of what is missed in all pixels no more than one of them may miss (batches.h): the greatest of each channel, summed.
+// Upper end of a quantity that at most one of all pixels can have missed (batches.h): the greatest of
+// each channel, summed.
 template <class F>
 double shared(const Values& v, F missed) {
   std::array<double, 3> most{};

@@ -21,7 +21,7 @@ using scene::TensorShape;
 
 const std::vector<int> sizes = {4, 6, 8, 10, 12, 16, 20, 24, 32};
 
-// Of this thread [s].
+// Processor time of this thread [s].
 double processor_time() {
   timespec t;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
@@ -37,7 +37,8 @@ Array noise(int size, unsigned seed) {
 // The matrix M_G of equation 10 times F, from the triple products that are not 0.
 class SparseProduct {
  public:
-  // Of all products of three polynomials along an axis; in three dimensions of three triples.
+  // Share of zeros among all products of three polynomials along an axis; in three dimensions, among
+  // products of three triples.
   double share_of_zeros() const { return 1 - double(entries_.size()) / std::pow(double(n_), 3); }
   double share_of_zeros_3d() const { return 1 - std::pow(1 - share_of_zeros(), 3); }
 
@@ -72,7 +73,7 @@ MatrixXd dense(int size, const std::function<Array(const Array&)>& apply) {
   return m;
 }
 
-// What is timed, with all that is prepared once.
+// The part to time, with everything prepared that is needed once.
 std::function<void()> part_of(const std::string& part, int n) {
   const auto space = std::make_shared<ConfinedSpace>(3, n);
   const Array u = n > 1 ? space->project(noise(space->size(), 1)) : Array();
@@ -107,7 +108,7 @@ std::function<void()> part_of(const std::string& part, int n) {
   return [=] { Eigen::EigenSolver<MatrixXd> solver(*m); };
 }
 
-// Of log y over log x, least squares.
+// Slope of log y over log x, by least squares.
 double slope(const std::vector<double>& x, const std::vector<double>& y) {
   double sx = 0, sy = 0, sxx = 0, sxy = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -149,7 +150,7 @@ Findings LegendreCost::run(const ProbeInput&, const scene::Settings& s, const sc
     part();  // memory that is kept
     std::vector<double> ms;
     repeat(int(s.integer("runs")), s.real("budget"), [&] {
-      // What is too short for the clock is repeated.
+      // Parts that are too short for the clock are repeated.
       int rounds = 0;
       const double start = processor_time();
       double spent = 0;

@@ -75,7 +75,7 @@ class Clock {
   std::map<std::string, double> now_;
 };
 
-// Of the linear systems for light among stages.
+// Time of the stages that solve linear systems for light.
 double seconds_of_systems(const std::vector<scene::StageTime>& times) {
   double sum = 0;
   for (const scene::StageTime& time : times)
@@ -136,7 +136,7 @@ Findings frames_of(const scene::Solver& solver, const scene::Renderer& renderer,
     scene->backdrops.push_back(
         std::make_shared<scene::Backdrop>(scene::draw(flakes, scene->camera, scene->width, scene->height)));
     now.lap("flakes");
-    // What lies on a device takes the place of this.
+    // If the density stays on the device, it replaces this placeholder.
     scene->media[0].field = rides ? scene::DensityField(unit) : flow->medium();
     finish(*scene);
     const auto picture = renderer.prepare(scene, of_renderer, execution);

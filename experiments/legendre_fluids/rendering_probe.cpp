@@ -19,7 +19,7 @@ enum class How { ray, paper, upwind, grid };
 const scene::Choices<How> ways{{"ray", How::ray}, {"paper", How::paper}, {"upwind", How::upwind}, {"grid", How::grid}};
 using Given = std::map<std::string, std::string>;
 
-// The same for all z in two dimensions: a thin slice, seen in its plane.
+// Smoke to render. In two dimensions it does not depend on z: a thin slice, seen in its plane.
 struct Smoke {
   int dimensions;
   double depth;  // of the box where it is thickest, about

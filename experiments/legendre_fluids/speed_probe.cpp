@@ -13,7 +13,7 @@ namespace {
 
 using Given = std::map<std::string, std::string>;
 
-// Of the paper's figures 10 and 11: coefficients along an axis, cells along an axis.
+// Sizes in the paper's figures 10 and 11: coefficients along an axis, cells along an axis.
 const std::vector<int> coefficients[2] = {{4, 6, 8, 10, 12, 16}, {3, 4, 5, 6, 8}};
 const std::vector<int> cells[2] = {{64, 128, 256, 512}, {16, 32, 64, 96}};
 

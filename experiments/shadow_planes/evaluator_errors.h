@@ -19,7 +19,7 @@ struct Evaluator {
   bool single = false;  // precision
 };
 
-// Of relative errors.
+// Distribution of relative errors.
 struct Spread {
   double median = 0, p99 = 0, greatest = 0;
 };
@@ -30,14 +30,14 @@ inline constexpr double map_foot = 5;
 inline const std::array<std::array<double, 2>, 3> map_parts = {{{1, 1}, {4, 2}, {8, 1}}};  // begin, length
 // Greatest relative error of the parts that are normal numbers of the precision; NaN: none is.
 double map_error(const Evaluator&, double extinction, double h);
-// Of the reference: 128 nodes against 256.
+// Relative error of the reference, by comparing 128 nodes with 256.
 double map_reference_error(double extinction, double h);
 
 // Relative error of the polynomial's integral about theta = 0 over random angles in [-reach, reach], a log-uniform, in
 // double precision.
 Spread errors_over_angles(int degree, double reach, double a_low, double a_high, int cases);
 
-// Endless rays over 0 to 90 degrees from a light at that optical distance: rms error over mean radiance.
+// Endless rays over 0 to 90 degrees from a light at this optical distance: rms error over mean radiance.
 double error_over_image(int degree, double optical_distance, int rays);
 
 // One evaluation on lit parts in fog that the light is 0.1 to 3 optical lengths away in: its errors, and its time in each
@@ -46,9 +46,9 @@ struct Timed {
   Spread errors;
   std::vector<double> seconds;
 };
-// Of one thread of the processor, its own time.
+// Errors, and times of one processor thread (its own processor time).
 Timed errors_and_times(const Evaluator&, int cases, int runs);
-// Of the whole device, in single precision; `differences` not.
+// Errors and times of the whole device, in single precision. The form `differences` is not available.
 Timed errors_and_times(gpu::Context&, const Evaluator&, int cases, int runs);
 
 }  // namespace airlight::experiments::shadow_planes

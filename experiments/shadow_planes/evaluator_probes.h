@@ -15,7 +15,7 @@ class EvaluatorMap : public Probe {
   Findings run(const ProbeInput&, const scene::Settings&, const scene::Execution&) const override;
 };
 
-// Of the polynomial over random angles.
+// Errors of the polynomial over random angles.
 class EvaluatorAngles : public Probe {
  public:
   std::string name() const override { return "evaluator_angles"; }
@@ -25,7 +25,7 @@ class EvaluatorAngles : public Probe {
   Findings run(const ProbeInput&, const scene::Settings&, const scene::Execution&) const override;
 };
 
-// Of the polynomial over a picture.
+// Errors of the polynomial over a picture.
 class EvaluatorImage : public Probe {
  public:
   std::string name() const override { return "evaluator_image"; }
@@ -45,7 +45,7 @@ class EvaluatorTimes : public Probe {
   Findings run(const ProbeInput&, const scene::Settings&, const scene::Execution&) const override;
 };
 
-// The same on the device.
+// Errors and times on the device.
 class EvaluatorTimesGpu : public EvaluatorTimes {
  public:
   std::string name() const override { return "evaluator_times_gpu"; }

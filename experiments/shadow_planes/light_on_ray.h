@@ -64,7 +64,7 @@ class FixedPolynomial {
   std::array<Real, most + 1> c_;
 };
 
-// Over the lit part alone.
+// Airlight of the lit part, integrated over that part alone.
 template <class Real>
 Real by_polynomial(const LightOnRay<Real>& on, int degree) {
   const Real begin = std::atan2(on.begin - on.T, on.h);
@@ -73,7 +73,7 @@ Real by_polynomial(const LightOnRay<Real>& on, int degree) {
          FixedPolynomial<Real>(on.extinction * on.h, degree).integral(begin, end);
 }
 
-// As section 4.2 has it: all light between the eye and the end of the part, less all light before its beginning.
+// Airlight as in section 4.2: all light between the eye and the end of the part, minus all light before its beginning.
 template <class Real>
 Real by_differences(const LightOnRay<Real>& on, int degree) {
   const auto gamma = [&](Real length) {

@@ -13,7 +13,7 @@ struct CavityProfiles {
   std::vector<double> u, v;
 };
 
-// What an oracle vector knows: the profiles at heights y and at places x, for each Reynolds number.
+// Content of an oracle vector: the profiles at heights y and at places x, for each Reynolds number.
 struct CavityTable {
   std::vector<double> y, x;
   std::vector<CavityProfiles> profiles;

@@ -31,7 +31,7 @@ struct Difference {
   double rms() const { return std::sqrt(squares / count); }
 };
 
-// What stands beside the known values: a flow, or a table.
+// Values to compare with the known ones: from a flow, or a table.
 using Curve = std::function<double(double)>;
 Difference difference(const std::vector<double>& places, const std::vector<double>& known, const Curve& curve) {
   Difference d;

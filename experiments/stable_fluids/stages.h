@@ -1,4 +1,4 @@
-// What probes of single stages share: a box of noise, its threads, and how often a stage is timed.
+// Common parts of probes of single stages: a box of noise, its threads, and how often a stage is timed.
 #pragma once
 #include <tbb/task_arena.h>
 

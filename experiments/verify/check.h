@@ -1,4 +1,4 @@
-// What a kind of vector becomes: a job that recomputes it and compares number by number.
+// A check of a vector: a job that recomputes it and compares number by number.
 #pragma once
 #include <functional>
 #include <string>
@@ -43,7 +43,7 @@ struct Check {
   std::function<Outcome(VerifyProfile)> on_device{};
   std::string not_on_device = "no device code computes this";
 };
-// What is missing in the program.
+// A check that the program does not implement.
 inline Check not_yet(const std::string& what) { return {"not yet: " + what, nullptr}; }
 // To the accuracy of the vector.
 inline Check no_renderer() { return {"no renderer computes this", nullptr}; }

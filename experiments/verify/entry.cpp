@@ -11,7 +11,7 @@
 namespace airlight::experiments::verification {
 namespace {
 
-// What was found, short enough for one line.
+// The value found, short enough for one line.
 std::string shown(const nlohmann::json& json) {
   std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   if (text.size() > 60) text = text.substr(0, 57) + "...";

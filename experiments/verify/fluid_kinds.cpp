@@ -242,7 +242,7 @@ Check read_confinement(const Value& v) {
 }  // namespace
 
 Check read_fluid(const Value& v) {
-  // What a vector is of, its input tells: columns of its rows, or its quantities.
+  // The input says the kind of a vector: by the columns of its rows, or by its quantities.
   const Value in = v["input"];
   const std::string rows = in.has("rows") ? in["rows"].text() : "";
   if (rows == "a,N,k,SL,MC,BFECC") return read_amplification(v);

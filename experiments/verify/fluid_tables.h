@@ -1,4 +1,4 @@
-// What vectors of flows have in common: tables by rows, a square box.
+// Common parts of vectors of flows: tables by rows, a square box.
 #pragma once
 #include <fmt/format.h>
 

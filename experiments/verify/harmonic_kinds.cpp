@@ -330,7 +330,7 @@ Check read_sh_exponential(const Value& v) {
           };
           off("off the depth", got.minus_depth, depth, most * off_tables * std::sqrt(4 / (4 * pi)));
           off("off the processor's", got.passed, of(got.minus_depth), 1e-12 + 10 * gpu::injected_error());
-          // What the tables' error is multiplied by: exponentials of what is below 0 on the whole sphere are at most 1.
+          // Factor on the tables' error: exponentials of functions below 0 on the whole sphere are at most 1.
           off("off what passes", got.passed, passed, distance(of(depth), passed) + most * off_tables);
         }
         return out;

@@ -39,7 +39,7 @@ inline std::vector<double> step_on_device(Step step, int order, const std::vecto
   if (step == Step::product || step == Step::about_axis) values.resize(std::size_t(order * order));
   return values;
 }
-// What of an extinction passes to the origin, and minus the depth around it.
+// Transmittance to the origin for one extinction, and minus the depth around it.
 struct Passed {
   crm::Harmonics passed, minus_depth;
 };
@@ -50,8 +50,8 @@ inline Passed passed_on_device(int order, crm::Transmittance kind, const scene::
   return result;
 }
 
-// What the device scatters towards directions of a light that nothing dims, against light of propagation directions that was convolved, as a
-// root mean square.
+// Compares the light that the device scatters into directions, from an undimmed light, with convolved light in
+// propagation directions, as a root mean square.
 inline Outcome compare_scattered(int order, double g, const crm::Harmonics& light, const crm::Harmonics& convolved) {
   gpu::Context& context = gpu::Context::get();
   scene::Medium medium;

@@ -105,7 +105,7 @@ class Comparing {
   void zero(const std::string& name, double got, double device) {
     add(absolute(name, 0, got, on_device_ ? device : fluid_gate));
   }
-  // What no solver has a part in: compared once.
+  // Numbers that do not depend on a solver: compared once.
   void of_input(const Value& v, const std::string& field, double got) {
     if (!on_device_) number(v, field, got);
   }

@@ -37,7 +37,7 @@ crm::Marched march_on_device(const on::SmokeDensity& density, const Rgb& sigma_t
   return {Rgb::Constant(airlight.download<float>()[0]), (-depth * sigma_t).exp()};
 }
 
-// Of `variant = paper`, through Gaussians with sources of 16 harmonics at their centres.
+// Marches on the device with `variant = paper`, through Gaussians with sources of 16 harmonics at their centres.
 class CentreMarch {
  public:
   explicit CentreMarch(const crm::MarchedSmoke& smoke)

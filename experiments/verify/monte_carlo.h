@@ -13,9 +13,9 @@ namespace airlight::experiments::verification {
 // Two standard errors apart this often, by chance: 4.5 se once in 1.5e5 normal comparisons (references.md, section 6).
 inline constexpr double accept_se = 4.5;
 
-// How far to go: until the standard error of the total is below `se`, as foretold by a pilot of other random numbers (a
-// stop by the samples themselves would be biased), but at least `least` samples, and no more than `most` samples or
-// about `collisions` collisions. What falls short of `se` has a larger standard error, and is judged by that.
+// Effort of a render: until the standard error of the total is below `se`, as predicted by a pilot with other random
+// numbers (a stop by the samples themselves would be biased). At least `least` samples, at most `most` samples or about
+// `collisions` collisions. A render that does not reach `se` has a larger standard error, and is judged by that.
 struct Effort {
   double se = 0;  // 0: `least` samples
   std::uint64_t least = 1 << 14;

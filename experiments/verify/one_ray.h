@@ -1,4 +1,4 @@
-// What a renderer shows along rays, for vectors: films of one pixel, of a preparation that is made once.
+// A renderer's result along rays, for vectors: films of one pixel, from a preparation that is made once.
 #pragma once
 #include <map>
 #include <memory>
@@ -15,7 +15,8 @@ inline scene::Camera camera_along(const Point3& origin, const Vec3& direction) {
   return scene::look_at(origin, origin + forward, up);
 }
 
-// Of one pixel. Above 0, an orthographic film of that height [m]: its camera looks at everything from the ray's direction.
+// View of one pixel along a ray. With `height` > 0 [m] the camera is orthographic: it looks at
+// everything from the ray's direction.
 inline scene::View view_along(const Ray& ray, double height) {
   scene::View view{camera_along(ray.origin, ray.direction), 1, 1};
   if (height > 0) view.camera.kind = scene::Camera::Kind::orthographic, view.camera.height = height;

@@ -1,4 +1,4 @@
-// Which file says what of itself, and which reader serves which kind of it.
+// Names of the vector files, and the reader of each kind of vector.
 #include <map>
 #include <set>
 

@@ -131,7 +131,7 @@ Check read_hash_round_trip(const Value& v) {
           residual[i];
     return scene::quantised(domain, dense, {threshold, {}});
   };
-  // What a store of `found` voxels has at positions, and at those where it has none.
+  // Levels of a store of `found` voxels at stored positions, and at positions without a voxel.
   using LevelAt = std::function<int(const Vector3i&)>;
   const auto compare_store = [=](Outcome& out, double found, double q, const LevelAt& level_at,
                                  const LevelAt& without) {

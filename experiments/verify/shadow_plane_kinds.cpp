@@ -33,7 +33,7 @@ PhaseForm phase_of(const Value& in) {
   in["phase"].complain("one of iso, rayleigh, hazy, murky, hg");
 }
 
-// What rounding of the input costs.
+// Error through rounding of the input.
 double conditioning(double extinction, double T, double h, double x0, double x1) {
   const double length = std::isinf(x1) ? 0 : std::max({std::abs(x0), std::abs(x1), std::abs(T)}) / (x1 - x0);
   return 1 + extinction * (x0 + std::hypot(x0 - T, h)) + length;

@@ -13,7 +13,7 @@ double cut_of(const Value& input);
 // A list of x, y, z, width and amplitude.
 scene::GaussianSum gaussians_of(const Value& input, const std::string& field = "rbf_x_y_z_r_w");
 
-// Those five numbers of each, in a row.
+// x, y, z, width and amplitude of each Gaussian, in a row.
 std::vector<double> numbers_of(const std::vector<scene::Gaussian>&);
 
 // Lists of real spherical harmonics, each a colour's.
@@ -42,10 +42,11 @@ inline compensated_ray_marching::Options paper_options(int order) {
 std::vector<double> evaluated(const std::vector<Rgb>& harmonics, const std::vector<Vec3>& directions);
 std::vector<double> powers_of(double g);
 
-// Of directions that light is gathered from at a point: transmittances have roots at the Gaussians' cuts.
+// Levels of the directions from which light is gathered at a point: transmittances have root
+// singularities at the Gaussians' cuts.
 inline constexpr int levels_at_a_point = 256;
 
-// Light from all around x, attenuated: of each direction its weight, what comes from it and what is left of that.
+// Attenuated light at x from all directions: weight, incoming radiance and transmittance of each direction.
 struct LeftOfLight {
   Vec3 toward;
   double weight, radiance, transmittance;

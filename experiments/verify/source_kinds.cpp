@@ -28,7 +28,8 @@ std::vector<Vec3> directions_of(const Value& list) {
   return all;
 }
 
-// Projections of what is seen from a point: the six sides of a cube, pixel by pixel. Of the transmittance and the light behind it.
+// Harmonics of the transmittance seen from a point, and of the light behind it, projected pixel by pixel
+// from the six sides of a cube.
 struct Seen {
   std::vector<double> transmittance = std::vector<double>(16, 0.0), light = transmittance;
 };
@@ -58,7 +59,7 @@ std::vector<double> vector_of(const std::vector<double>& lit) {
   return {-scale * lit[3], -scale * lit[1], scale * lit[2]};
 }
 
-// The diffusion system, row by row. On the device as CentreSourcesOnDevice has it.
+// The diffusion system, row by row, as CentreSourcesOnDevice assembles it on the device.
 struct System {
   std::vector<double> matrix, right;
 };

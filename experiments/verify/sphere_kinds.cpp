@@ -162,7 +162,7 @@ Check read_multiple_scattering(const Value& v) {
   const double collisions = e["mean_collisions_analog"].number();
   const double histories = e["histories"].number();
   const std::string id = v["id"].text();
-  // What CI runs: no sharp phase functions, in dense fog or under a near light, which take minutes.
+  // The quick profile (CI) leaves out sharp phase functions, which take minutes in dense fog or under a near light.
   const bool paper_only = std::abs(in["g"].number()) >= 0.9;
   return {"", [=](VerifyProfile profile) {
             if (paper_only && profile == VerifyProfile::quick)

@@ -105,7 +105,8 @@ Check read_multiple_scattering_ball(const Value& v) {
         }
       mean_errors[fine] = relative_distance(means, expected_means);
     }
-    // 8 and 23 deep; cells of up to 2.2 and 0.75 depths, in the second case 6.4 and 2.1. Of second order: a ninth.
+    // The smoke is 8 or 23 deep. Coarse cells are up to 2.2 or 6.4 deep, fine cells 0.75 or 2.1. An error of second
+    // order falls to a ninth.
     const auto below = [&](const char* what, double error, double bound) { o.add(absolute(what, 0, error, bound)); };
     const auto below_coarse = [&](const char* what, const double* errors) {
       if (errors[0] > 0.01) below(what, errors[1] / errors[0], 0.2);

@@ -60,7 +60,7 @@ std::vector<Vector> read_file(const std::string& path) {
   return vectors_read;
 }
 
-// What a job refuses is told with the vector's place.
+// Errors of a job are reported with the vector's position.
 Outcome computed(const Vector& w, const std::string& path, VerifyProfile profile, VerifyOn on) try {
   if (on == VerifyOn::processor) return w.check.job(profile);
   const gpu::Use use(gpu::Context::get());
@@ -103,7 +103,7 @@ void count(VerifyKind& line, const std::string& id, const Outcome& outcome) {
   }
 }
 
-// What became of the vectors of one file, or of all.
+// Results for the vectors of one file, or of all.
 struct Totals {
   int vectors = 0, numbers = 0, out = 0, not_yet = 0, left_out = 0;
   void add(const VerifyKind& line) {

@@ -15,7 +15,7 @@ enum class VerifyProfile {
 // Whose numbers are compared: those of the processor's functions, or those of the shaders that draw pictures.
 enum class VerifyOn { processor, device };
 
-// What became of the vectors of one kind in one file.
+// Results for the vectors of one kind in one file.
 struct VerifyKind {
   std::string file, kind;
   int vectors = 0;   // with at least one number compared

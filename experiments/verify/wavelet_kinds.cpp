@@ -169,7 +169,7 @@ std::string scene_of(const Value& v) {
       v["degree"].integer(), v["width"].integer(), v["height"].integer(), fmt::join(values, ", "), profile);
 }
 
-// What the refusal must name.
+// The fault that the refusal must name.
 std::string fault_of(const Value& v) {
   for (std::size_t i = 0; i < v["coef"].size(); ++i) {
     if (v["coef"][i].json().is_string()) return fmt::format("values[{}]", i);

@@ -1,4 +1,4 @@
-// What a voxel grid loses as a fogmap of its columns.
+// Error of a voxel grid as a fogmap of its columns.
 #pragma once
 #include "experiments/application/probe.h"
 

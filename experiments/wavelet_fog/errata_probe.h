@@ -1,4 +1,4 @@
-// What the misprints of Giroud and Biri 2010 are worth: formulas as printed beside what they must be.
+// Effect of the misprints in Giroud and Biri 2010: formulas as printed beside the corrected ones.
 #pragma once
 #include "experiments/application/probe.h"
 

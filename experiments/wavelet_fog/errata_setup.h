@@ -1,4 +1,4 @@
-// What the errata share: the map, its rays, its levels; and those that stand in errata_claims.cpp.
+// Common parts of the errata: the map, its rays, its levels; and the errata of errata_claims.cpp.
 #pragma once
 #include <cmath>
 #include <functional>

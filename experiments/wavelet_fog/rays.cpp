@@ -14,7 +14,7 @@ MapRays map_rays(const std::filesystem::path& file, const scene::Overrides& over
     throw Error(scene.name + ": the probe needs a fogmap as first medium");
   MapRays rays;
   rays.map = std::get<scene::FogmapPointer>(scene.media[0].field)->map;
-  // As shares of the map's sides: three eyes outside, three in the fog.
+  // Eyes as shares of the map's sides: three outside the fog, three within.
   const double eyes[][2] = {{0.5, -0.08}, {-0.08, 0.31}, {1.09, 1.09}, {0.16, 0.16}, {0.51, 0.49}, {0.78, 0.31}};
   const double lengths[] = {4, 15, 40, 75, 130};
   double sum = 0;

@@ -1,5 +1,5 @@
-// What it costs to drop details by the object's distance (Giroud and Biri 2010, section 4.4, eq. 12): errors, and seams, since the same fog
-// before a near and a far object is not the same.
+// Cost of dropping details by the object's distance (Giroud and Biri 2010, section 4.4, eq. 12): errors, and seams,
+// since fog looks different before a near and a far object.
 #pragma once
 #include "experiments/application/probe.h"
 

@@ -18,7 +18,7 @@ constexpr double side = 64;  // [m] of every map
 enum class Kind { smooth, patchy, hard };
 const scene::Choices<Kind> kinds{{"smooth", Kind::smooth}, {"patchy", Kind::patchy}, {"hard", Kind::hard}};
 
-// The same fog at any size: finer maps have finer details of the noise, hard edges stay where they are.
+// Draws a fog that looks alike at any size: finer maps have finer details of the noise, hard edges stay where they are.
 std::vector<double> drawn(Kind kind, int size) {
   using airlight::wavelet_fog::authoring::Canvas;
   Canvas canvas(size, size, side / size);

@@ -1,5 +1,5 @@
-// Real spherical harmonics of SH_ORDER bands for a unit direction, as scene/math/spherical_harmonics.h: orthonormal,
-// Condon-Shortley, index l(l+1)+m, polar axis z. The same recurrence upwards in l, pair by pair, so that nothing holds them all:
+// Real spherical harmonics of SH_ORDER bands for a unit direction, like scene/math/spherical_harmonics.h: orthonormal, Condon-Shortley,
+// index l(l+1)+m, polar axis z. The recurrence runs upwards in l, pair by pair, so that they need not all be stored:
 //
 //   for (ShPair y = first_pair(w); y.m < sh_order; next_pair(y, w)) // y.plus of index y.l * (y.l + 1) + y.m, y.minus of - y.m
 //

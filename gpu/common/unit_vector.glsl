@@ -1,4 +1,4 @@
-// (cos, sin) of an angle in [-2 pi, 2 pi], to 1e-14. Those of GLSL may have an absolute error of 2^-11.
+// (cos, sin) of an angle in [-2 pi, 2 pi], to 1e-14. GLSL allows its own functions an absolute error of 2^-11.
 dvec2 unit_vector(double angle) {
   double quarters = floor(angle * 0.63661977236758134LF + 0.5LF), x = angle - quarters * 1.5707963267948966LF, w = x * x;
   double c = 1 - w / 2 * (1 - w / 12 * (1 - w / 30 * (1 - w / 56 * (1 - w / 90 * (1 - w / 132 * (1 - w / 182))))));

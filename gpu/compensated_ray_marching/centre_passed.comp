@@ -1,4 +1,4 @@
-// What passes to the centres of the Gaussians, of every extinction there is: once for a smoke.
+// Transmittance to the centres of the Gaussians, for every distinct extinction: computed once per smoke.
 layout(local_size_x = LOCAL_SIZE_X) in;
 #include "compensated_ray_marching/passed.glsl"
 layout(std430, binding = AT_PASSED) writeonly buffer Passed { double passed[]; };  // [extinction][band][centre]

@@ -1,6 +1,7 @@
-// Source radiance at the centres of the Gaussians, on the device: methods/compensated_ray_marching/centre_sources.h. What passes the smoke
-// and the diffusion system's matrix are found once; a light that turns sends its harmonics. In double precision, for the system squares
-// conditions of a thousand, and shows what its right side was rounded by.
+// Source radiance at the centres of the Gaussians, on the device:
+// methods/compensated_ray_marching/centre_sources.h. Transmittances and the diffusion system's matrix
+// are computed once; a light that turns uploads its harmonics. In double precision, because the system
+// squares condition numbers of a thousand, which amplifies the rounding of its right side.
 #pragma once
 #include <array>
 
@@ -17,15 +18,16 @@ namespace airlight::gpu::compensated_ray_marching {
 
 class CentreSourcesOnDevice {
  public:
-  // `sum` and `medium` are of the same smoke, amplitudes above 0; the medium outlives this. Of the surfaces spheres cast shadows, and meshes
-  // as sets of spheres; planes none. The density is that of the march, for surfaces (null: no smoke), `middle` its middle; it outlives
-  // this. Stages of the timer: what passes, the matrices. Throws Unavailable where the device has no room.
+  // `sum` and `medium` describe one smoke, with amplitudes above 0; the medium must outlive this object. Spheres cast
+  // shadows, meshes cast shadows as sets of spheres, planes cast none. The density is the one that is marched through,
+  // for light on surfaces (null: no smoke), and must outlive this object; `middle` is its middle. Stages of the timer:
+  // what passes, the matrices. Throws Unavailable where the device has no room.
   CentreSourcesOnDevice(Context&, const scene::GaussianSum& sum, const scene::Medium& medium,
                         const std::vector<scene::Surface>&, bool scatters, const SmokeDensity*, const Point3& middle,
                         const airlight::compensated_ray_marching::Options&, StageTimer&, const scene::Execution&);
 
-  // A light, or another, order^2 coefficients of lookup directions. Conjugate gradients begin with the radiance before; as many as it took
-  // are told to the device before they are looked at.
+  // Sets the light: order^2 coefficients of lookup directions. Conjugate gradients start from the previous radiance.
+  // The host first submits as many iterations as were needed last time, then checks convergence.
   void light(const std::vector<Rgb>& harmonics, StageTimer&, const scene::Execution&);
 
   // Where the first light begins: with the solution of the last frame's smoke, which `solution` downloads.
@@ -36,18 +38,18 @@ class CentreSourcesOnDevice {
     return diffusion_ ? diffusion_->solution() : airlight::compensated_ray_marching::Solution{};
   }
 
-  // Of each centre towards the camera, of either sign, in sources() [W/m^2/sr].
+  // Computes the radiance of each centre towards the camera, of either sign, into sources() [W/m^2/sr].
   void towards(const scene::View&);
   const Buffer& sources() const { return *sources_; }
 
-  // What surfaces of Lambert's reflect, into Lit of every pixel.
+  // Light that Lambertian surfaces reflect, written into Lit of every pixel.
   void light_surfaces(const scene::View&, const SurfacesOnDevice&, const Buffer& primitives, const Buffer& lit);
 
   int centres() const { return count_; }
   int objects() const { return objects_; }
   // Why multiple scattering is left out; empty where it is not.
   const std::string& single_only() const { return single_only_; }
-  // Of multiple scattering, as its system says.
+  // Statistics of the solver for multiple scattering.
   int iterations() const { return diffusion_ ? diffusion_->iterations() : 0; }
   double residual() const { return diffusion_ ? diffusion_->residual() : 0; }
   double negative_share() const { return diffusion_ ? diffusion_->negative_share() : 0; }

@@ -19,7 +19,7 @@ struct TermData {
   double value;
 };
 
-// Of every coefficient all that its sum runs over, in a row; before them where each row begins and ends.
+// Terms of the triple product, one row per coefficient. The list begins with the start and end of each row.
 std::vector<TermData> terms_of(int order) {
   std::vector<std::vector<TermData>> rows(std::size_t(order * order));
   for (const auto& [i, j, k, value] : scene::triple_product(order).terms()) {
@@ -42,7 +42,7 @@ std::vector<TermData> terms_of(int order) {
   return all;
 }
 
-// Of directions in place of bands: what each adds to a coefficient.
+// Terms for directions instead of bands: the contribution of each direction to a coefficient.
 std::vector<TermData> terms_of(int order, const std::vector<airlight::compensated_ray_marching::Ordinate>& directions) {
   const int bands = order * order, count = int(directions.size());
   std::vector<TermData> all;

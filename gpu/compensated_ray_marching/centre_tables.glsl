@@ -1,5 +1,5 @@
-// What the processor knows of SH_ORDER bands of real spherical harmonics, in double precision; where tables begin are definitions of
-// centre_sources.cpp.
+// The processor's tables for SH_ORDER bands of real spherical harmonics, in double precision. Definitions by centre_tables.cpp say
+// where each table begins.
 layout(std430, binding = AT_CENTRE_TABLES) readonly buffer CentreTables { double tables[]; };
 uniform int sh_order;  // SH_ORDER: loops run to a uniform, or Mesa unrolls them
 

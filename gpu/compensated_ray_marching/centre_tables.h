@@ -1,4 +1,5 @@
-// What shaders read of the processor's tables for sources at the centres, in double precision: centre_tables.glsl, triple_product.glsl.
+// The processor's tables for sources at the centres, uploaded for shaders in double precision: centre_tables.glsl,
+// triple_product.glsl.
 #pragma once
 #include "gpu/compensated_ray_marching/interface.h"
 #include "methods/compensated_ray_marching/source_radiance.h"
@@ -7,7 +8,7 @@ namespace airlight::gpu::compensated_ray_marching {
 
 class CentreTables {
  public:
-  // Shadows of objects only where there are any. Of `directional` products are of what is known by direction.
+  // `objects`: with tables for shadows of objects. For `directional`, products are sums over directions.
   CentreTables(Context&, int order, airlight::compensated_ray_marching::Transmittance, double cutoff, bool objects);
   const Definitions& definitions() const { return definitions_; }
   void bind(Program&) const;  // centre_tables.glsl

@@ -8,7 +8,7 @@ layout(std430, binding = AT_SINGLE) readonly buffer Single { float single_source
 layout(std430, binding = AT_SOURCE) readonly buffer Source { float source[]; };
 layout(std430, binding = AT_RESULT) buffer Result { float result[]; };
 layout(std430, binding = AT_STEPS) writeonly buffer Steps { float steps[]; };            // [slot][light of the solve][band][cell]
-// Of band 0: [at, residual, moved, residual steps by slot][light of the solve][cell].
+// Band 0 of the iterates: [at, residual, moved, residual steps by slot][light of the solve][cell].
 layout(std430, binding = AT_MEANS) buffer Means { float means[]; };
 layout(std430, binding = AT_BALANCE) readonly buffer Balance { float balance[]; };       // [channel][cell]
 uniform int directions, cells;

@@ -19,7 +19,7 @@ Derivatives derivatives_at(int i, dvec3 x) {
   return Derivatives(value, value * (4 * far - 6) / square, -2 / square * value * offset);
 }
 
-// Of what each lane has in parts[s * lanes + lane].
+// totals[s] = sum of parts[s * lanes + lane] over all lanes.
 void add_up() {
   barrier();
   if (lane < SUMS) {

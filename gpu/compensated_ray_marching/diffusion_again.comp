@@ -1,4 +1,4 @@
-// What is scattered again, from the mean radiance at the centres: scattered_radiance of diffusion_system.h, as bands 0 and 1 of sources.
+// Multiple scattering from the mean radiance at the centres: scattered_radiance of diffusion_system.h, as bands 0 and 1 of sources.
 layout(local_size_x = LOCAL_SIZE_X) in;
 #include "compensated_ray_marching/diffusion.glsl"
 #include "compensated_ray_marching/diffusion_vectors.glsl"

@@ -13,7 +13,7 @@ void main() {
 #else
   int result = int(gl_WorkGroupID.x) * LOCAL_SIZE_Y + y, part = x, parts_of = LOCAL_SIZE_X;
 #endif
-  bool over = states[first_system + z].done != 0;  // the same for all
+  bool over = states[first_system + z].done != 0;  // uniform over all lanes
   if (over) return;
   double sum = 0;
   int from = vector_at(z, from_vector);

@@ -1,4 +1,4 @@
-// What the source sends into each direction of the ordinates.
+// Light that the source sends into each direction of the ordinates.
 layout(local_size_x = LOCAL_SIZE_X) in;
 #include "compensated_ray_marching/smoke_state.glsl"
 layout(std430, binding = AT_SOURCE) readonly buffer Source { float source[]; };           // [light][band][cell]

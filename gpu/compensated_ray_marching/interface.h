@@ -1,4 +1,4 @@
-// What host and shaders of the renderer must agree about, said once.
+// Constants and layouts shared by host and shaders of the renderer.
 #pragma once
 #include <map>
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace airlight::gpu::compensated_ray_marching {
 
-// Storage blocks, AT_... in shaders. What no shader has at the same time shares a number; 9 is that of environments.
+// Storage blocks, AT_... in shaders. Blocks that no shader uses together share a number; 9 is that of environments.
 namespace at {
 enum Binding {
   // sources

@@ -34,7 +34,7 @@ struct StateData {
   int done, iterations;
 };
 
-// As DiscreteOrdinates::sweep has them.
+// Axis and steps of a direction, with the conventions of DiscreteOrdinates::sweep.
 WayData way_of(const Ordinate& d, double edge) {
   int axis = 0;
   for (int a = 1; a < 3; ++a)
@@ -109,7 +109,7 @@ void LitGridOnDevice::upload_edges(const airlight::compensated_ray_marching::Bey
                                            std::vector<float>(beyond.weights.begin(), beyond.weights.end()));
 }
 
-// What the ordinates know of each cell: their balance, and which of them an object blocks, a bit for each.
+// Uploads each cell's balance of the ordinates, and a bit for each ordinate that an object blocks.
 void LitGridOnDevice::upload_cells(const LitGrid& grid) {
   std::vector<float> balance(3 * std::size_t(cells_), 1.0F);
   for (std::size_t c = 0; c < 3; ++c)
@@ -233,7 +233,7 @@ void LitGridOnDevice::iterate(const Group& g, int iteration) {
   combine(g, iteration);
 }
 
-// What the cells send along each ordinate.
+// Light that the cells send along each ordinate.
 void LitGridOnDevice::emit(const Group& g) {
   Program& p = *emit_program_;
   source_->bind(at::source);

@@ -1,5 +1,5 @@
-// What of the light passes smoke and objects on its way to a point, in harmonics of lookup directions: SourceRadiance::passed of
-// methods/compensated_ray_marching. A point is a work group's; Gaussians and spheres are shared out among its lanes, coefficients too.
+// Transmittance of smoke and objects on the way to a point, in harmonics of lookup directions: SourceRadiance::passed of
+// methods/compensated_ray_marching. A work group computes a point; Gaussians, spheres and coefficients are divided among its lanes.
 #include "common/private_doubles.glsl"
 #include "compensated_ray_marching/doubles.glsl"
 #include "compensated_ray_marching/centre_tables.glsl"
@@ -22,7 +22,7 @@ shared int within_sphere;
 
 uvec2 band[SH_ORDER];  // bits of doubles: coefficients of a zonal function times sqrt(4 pi / (2l+1))
 
-// That function about a unit axis, times a factor, is added to the lane's row.
+// Adds the zonal function `band` about a unit axis, times a factor, to the lane's row.
 void add_about(dvec3 axis, double factor) {
   for (Harmonic y = first_harmonic(); y.m < sh_order; next_harmonic(y, axis)) {
     int at = (y.l * (y.l + 1) + y.m) * lanes + lane;
@@ -96,7 +96,7 @@ double product_at(int k, int a, int b) {
   for (int t = terms[k].i; t < terms[k].j; ++t) sum += terms[t].value * vectors[a + terms[t].i] * vectors[b + terms[t].j];
   return sum;
 }
-// Of two vectors into the first.
+// Replaces the first vector by the triple product of both, times the factor.
 void multiply(int a, int b, double factor) {
   double product = lane < BANDS ? factor * product_at(lane, a, b) : 0;
   barrier();

@@ -1,5 +1,5 @@
-// A scene prepared and drawn on the device: what both variants have in common. What gives the smoke its light is the variant's:
-// grid_picture.cpp and paper_picture.cpp.
+// A scene prepared and drawn on the device: the common part of both variants. Each variant computes the smoke's light
+// in its own file: grid_picture.cpp and paper_picture.cpp.
 #pragma once
 #include <memory>
 #include <optional>
@@ -48,11 +48,13 @@ class Picture : public scene::Prepared {
   virtual std::vector<scene::StageTime> light(const scene::Execution&) = 0;
   virtual bool fits(const scene::Scene&) const = 0;  // may its lights be the next ones?
   virtual Solution solution() const = 0;
-  // What a frame does: source radiance towards the camera, in stages of the frame's timer; into the program of the march; surfaces.
+  // Work of a frame: source radiance towards the camera, in stages of the frame's timer; bindings for the program of
+  // the march; surfaces.
   virtual void find_source(const scene::View&) const = 0;
   virtual void bind_source(Program&) const = 0;
   virtual void light_surfaces(const scene::View&) const = 0;
-  // What is told: how single and multiple scattering are done, or why not; the volume pass, if there is one; what lights surfaces.
+  // Texts for `explain`: how single and multiple scattering are done, or why not; the volume pass, if
+  // there is one; the light on surfaces.
   virtual std::string single() const = 0;
   virtual std::pair<bool, std::string> multiple() const = 0;
   virtual std::optional<std::string> volume_pass() const { return std::nullopt; }

@@ -28,9 +28,10 @@ class ResidualOnDevice {
   // How a hash tells which positions are stored.
   enum class Membership { tags, domain };
 
-  // Of a frame of `size` samples. Throws Unavailable in one line where the device has no room.
+  // The residual of a frame of `size` samples as bricks. Throws Unavailable in one line where the device has no room.
   ResidualOnDevice(Context&, const Eigen::Vector3i& size, const scene::ApronBricks&);
-  // Of the frame of `size` samples that begins at `tile` of the hash's domain (that of a sequence).
+  // The residual of a frame of `size` samples as a hash; the frame begins at `tile` of the domain of its
+  // sequence's hash.
   ResidualOnDevice(Context&, const Eigen::Vector3i& size, const scene::PerfectHash&, Membership,
                    const Eigen::Vector3i& tile = Eigen::Vector3i::Zero());
 
@@ -38,7 +39,7 @@ class ResidualOnDevice {
   std::map<std::string, std::string> definitions() const;
   // Buffers and uniforms of the shader.
   void bind(Program&) const;
-  // Of the buffers: a hash's offsets take 4 bytes each here.
+  // Size of the buffers: on the device a hash's offsets take 4 bytes each.
   std::size_t bytes() const;
 
  private:

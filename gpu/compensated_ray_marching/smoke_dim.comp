@@ -1,4 +1,4 @@
-// What the smoke takes of light from one direction on its way to surfaces, from what those reflect.
+// Dims the light that surfaces reflect from one direction by the smoke on its way.
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "raster/view.glsl"
 #include "wavelet_fog/lit.glsl"

@@ -10,7 +10,7 @@ namespace airlight::gpu::compensated_ray_marching {
 
 class SmokeVolume {
  public:
-  // Of smoke with voxels, its residual as bricks or hash; it outlives this.
+  // The smoke has voxels, and its residual is stored as bricks or hash. It must outlive this object.
   SmokeVolume(Context&, const airlight::compensated_ray_marching::SmokeField&);
 
   // sources: of each centre towards the camera, as CentreSourcesOnDevice has them.

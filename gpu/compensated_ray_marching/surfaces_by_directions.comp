@@ -1,5 +1,5 @@
-// What surfaces reflect of the environment past smoke and spheres, by directions, a pixel a work group: SourceRadiance::irradiance of
-// `directional`, of Lambert's.
+// Light of the environment that Lambertian surfaces reflect past smoke and spheres, by directions, a pixel per work group:
+// SourceRadiance::irradiance of `directional`.
 layout(local_size_x = LOCAL_SIZE_X) in;
 #include "raster/view.glsl"
 #include "raster/primitive.glsl"
@@ -33,7 +33,7 @@ float visible_share(dvec3 x, int surface) {
 
 void main() {
   int place = int(gl_WorkGroupID.y) * view_width + int(gl_WorkGroupID.x), primitive = primitive_of[place];
-  if (primitive < 0) {  // the same for all lanes
+  if (primitive < 0) {  // uniform over all lanes
     if (lane == 0) lit[place] = Lit(vec4(0), vec4(0), 0, 0);
     return;
   }

@@ -1,4 +1,4 @@
-// What stands in the smoke and behind it: ends of camera rays, environments, and surfaces where they are lit from directions.
+// Objects in and behind the smoke: ends of camera rays, environments, and surfaces lit from directions.
 #pragma once
 #include <memory>
 #include <vector>

@@ -11,7 +11,7 @@ struct Way {
 };
 layout(std430, binding = AT_DENSITIES) readonly buffer Densities { float densities[]; };  // of the cells
 layout(std430, binding = AT_EMITTED) readonly buffer Emitted { float emitted[]; };        // [direction][light of the solve][cell]
-layout(std430, binding = AT_LIGHT) buffer Light { float light[]; };                       // the same: radiance
+layout(std430, binding = AT_LIGHT) buffer Light { float light[]; };                       // radiance, [direction][light of the solve][cell]
 layout(std430, binding = AT_WAYS) readonly buffer Ways { Way ways[]; };
 layout(std430, binding = AT_OPEN) readonly buffer Open { uint open[]; };                  // [32 directions][cell]: open_ways
 uniform int has_objects;

@@ -1,5 +1,5 @@
-// Which Gaussians a tile of camera rays may meet between two distances, a lane a Gaussian: the tile's rays lie in a cone, or if they are
-// parallel in a cylinder. A bit a Gaussian, so that sums are in the same order whoever comes first.
+// Gaussians that a tile of camera rays may meet between two distances, one per lane: the tile's rays lie in a cone, or, if parallel, in
+// a cylinder. The result is one bit per Gaussian, so that the order of sums does not depend on the order of lanes.
 const int tile_lanes = LOCAL_SIZE_X * LOCAL_SIZE_Y, tile_words = (tile_lanes + 31) / 32;
 shared uint tile_met[3 * tile_words];                  // of three turns: one is written, one is read, one is cleared
 shared uint tile_nearest, tile_farthest, tile_spread;  // bits of floats that are not below 0: [m], sine of the cone, or radius [m]

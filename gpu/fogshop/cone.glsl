@@ -9,7 +9,7 @@ Cone cone_of(vec3 origin, vec3 axis, float start, float spread) {
   return Cone(origin, axis, start, spread, sqrt(max(0, 1 - spread * spread)));
 }
 
-// Of rays that end `far` metres from their start.
+// Whether rays that end `far` metres from their start come within reach of a Gaussian.
 bool touches(Cone cone, Gaussian g, float far) {
   vec3 q = g.center - cone.origin;
   float m = dot(q, cone.axis), p = length(q - m * cone.axis), radius = sqrt(g.radius_squared) * 1.0001 + cone.start;

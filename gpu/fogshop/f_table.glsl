@@ -1,8 +1,8 @@
 // L_a^h as printed before Eq. 17 of Zhou et al. 2007, by the paper's table of F (methods/fogshop/f_table.cpp).
 //
-// The table holds what F lacks to F(u, pi/2). That falls along v at an ever smaller rate, so that no difference of two entries
-// is below 1/255 of them, and keeps its digits; F itself comes so close to its limit that two of them have none left in
-// single precision.
+// The table holds the difference F(u, pi/2) - F. It falls along v at an ever smaller rate, so that no difference of two entries is
+// below 1/255 of them, and digits are kept. F itself comes so close to its limit that the difference of two values has no digits left
+// in single precision.
 float rest_of_f(int entry) { return fog_table[F_TABLE_FROM + entry]; }  // u slowest
 const float u_max = 10;
 

@@ -56,7 +56,7 @@ std::vector<LightData> light_data(const airlight::fogshop::Model& model, bool ma
   return data;
 }
 
-// What F lacks to its limit, see f_table.glsl; empty where Eq. 17 does without the table.
+// Difference between F and its limit, see f_table.glsl; empty where Eq. 17 is evaluated without the table.
 std::vector<float> rest_of_f(const airlight::fogshop::Model& model, bool wanted, int& size) {
   std::vector<float> rest;
   if (!wanted) return rest;

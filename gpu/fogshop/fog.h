@@ -50,8 +50,8 @@ class FogOnDevice {
   // rays may meet; images are done in strips.
   const Buffer& airlight(const scene::View&, const Buffer* distances, Frame&);
 
-  // The same at the settings' lower resolution, brought back to the film's: `low_distances` holds d_vp of the low pixels
-  // [m]; both are null where every ray is infinite.
+  // Airlight at the settings' lower resolution, upsampled to the film's. `low_distances` holds d_vp of the low pixels
+  // [m]; both buffers are null where every ray is infinite.
   const Buffer& low_resolution_airlight(const scene::View&, const Buffer* distances, const Buffer* low_distances,
                                         Frame&);
 

@@ -46,7 +46,7 @@ class PreparedFogshopGpu final : public scene::Prepared {
   std::optional<std::vector<scene::StageTime>> next(std::shared_ptr<const Scene>, const Execution&) override;
 
  private:
-  // What a frame leaves on the device, null where the scene has no such thing.
+  // Buffers of a frame on the device, null if the scene does not need them.
   struct Picture {
     const Buffer *distances = nullptr, *primitives = nullptr, *airlight = nullptr, *surface = nullptr;
   };
@@ -71,7 +71,7 @@ class PreparedFogshopGpu final : public scene::Prepared {
   std::unique_ptr<FogOnDevice> fog_;
   std::unique_ptr<FirstHits> first_hits_;    // null: rays are infinite
   std::unique_ptr<SurfaceShading> shading_;  // null: left out
-  std::unique_ptr<Background> background_;   // the same
+  std::unique_ptr<Background> background_;   // null: left out
   std::vector<scene::StageTime> times_;
   int maps_made_ = 0;            // for this frame; others are of frames before
   std::optional<Traffic> next_;  // of next(), if there was one

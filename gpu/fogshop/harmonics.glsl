@@ -40,7 +40,7 @@ Reflected reflectance_of(Material m, vec3 normal, vec3 to_view) {
   vec3 x = sine > 1e-6 ? aside / sine : normalize(cross(normal, other));
   return Reflected(false, vec3(0), x, normal, m.places.x + 3 * SH_SIZE * entry, place - float(entry));
 }
-// Of a table, in its own axes.
+// Coefficient of a tabulated reflectance, in the table's own axes.
 vec3 own_coefficient(Reflected r, int i) { return mix(rgb_at(r.low + 3 * i), rgb_at(r.low + 3 * (SH_SIZE + i)), r.share); }
 
 #if TRANSFER
@@ -63,7 +63,7 @@ vec3 band(int at, int depths, int l, vec3 place) {
   return g;
 }
 
-// What the medium at depth T from a light scatters onto the surface, reflected, per unit of I/d^2 and albedo: Eq. 25.
+// Reflected light that the medium at depth T from a light scatters onto the surface, per unit of I/d^2 and albedo: Eq. 25.
 vec3 reflect_point(Reflected r, vec3 to_light, vec3 T) {
   vec3 place = band_place(T, point_depths), sum = vec3(0);
   for (int l = 0; l < sh_order; ++l) set_row(weights_from + l, zonal_factor(l) * band(point_bands_at, point_depths, l, place));

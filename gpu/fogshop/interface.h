@@ -1,4 +1,4 @@
-// What host and shaders of this method must agree about, said once.
+// Constants and layouts shared by host and shaders of this method.
 #pragma once
 #include <array>
 #include <map>
@@ -8,8 +8,9 @@
 
 namespace airlight::gpu::fogshop {
 
-// Storage blocks, AT_... in shaders. gpu/raster has 10 to 12 and 14 (surfaces, the tree) and 5 (what lights see),
-// gpu/common 9 (values of an environment). What no shader has at the same time shares a number. `lights` is a uniform block.
+// Storage blocks, AT_... in shaders. gpu/raster has 10 to 12 and 14 (surfaces, the tree) and 5 (light
+// distances), gpu/common 9 (values of an environment). Blocks that no shader uses together share a
+// number. `lights` is a uniform block.
 namespace at {
 enum Binding {
   gaussians = 0,
@@ -70,7 +71,7 @@ struct LightData {
   float unused;
 };
 
-// What average_depth.glsl needs.
+// Definitions for average_depth.glsl.
 std::map<std::string, std::string> dawson_definitions();
 
 // A program with the bindings defined. Throws Error if the driver lays out the structures above otherwise than the

@@ -16,7 +16,7 @@ layout(std140, binding = AT_LIGHTS) uniform Lights { Light lights[MOST_LIGHTS]; 
 uniform int light_count;
 uniform float source_radius;  // [m]
 
-// As methods/fogshop/light_map.h: a border of one texel, distances by edges.
+// Layout like methods/fogshop/light_map.h: a border of one texel, distances by edges.
 uniform int map_directions, map_edges;
 
 float map_distance(Light light, int edge) {

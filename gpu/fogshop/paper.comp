@@ -44,7 +44,7 @@ void main() {
         vec3 offset = x - lights[l].position;
         float distance_ = length(offset);
         Crossing towards = cross_line(g, lights[l].position, offset / max(distance_, 1e-30), distance_);
-        // Eqs. 11 to 13, exponents added before the exponential. What lies beyond its radius still counts here.
+        // Eqs. 11 to 13, exponents added before the exponential. Gaussians beyond their radius still count here.
         float exponent = -segment_depth[l * gaussian_count + int(g.place)] - segment_depth[to_view + int(g.place)] -
                          depth_at(towards, distance_) - before;
         float weight = whole / (4 * pi * (distance_ * distance_ + source_radius * source_radius));

@@ -1,5 +1,5 @@
-// Which pixels a dispatch computes: those of the film, one in the middle of each block of film_step x film_step, or the edges
-// alone (methods/fogshop/low_resolution.h). Depths of the results are those of T(v, p), at extinction ratio 1.
+// Pixels that a dispatch computes: those of the film, one in the middle of each block of film_step x film_step, or the edges alone
+// (methods/fogshop/low_resolution.h). Depths of the results are those of T(v, p), at extinction ratio 1.
 #include "common/far_away.glsl"
 layout(std430, binding = AT_DISTANCES) readonly buffer Distances { float distances[]; };  // of the pixels that are computed
 layout(std430, binding = AT_PIXELS) buffer Pixels { vec4 pixels[]; };                  // airlight, depth

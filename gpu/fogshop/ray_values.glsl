@@ -1,5 +1,6 @@
-// What the passes of variant S hand on, by ray of a strip of tiles (gpu/fogshop/airlight_pass.cpp, which defines the sizes): a field of all
-// rays, then the next, so that neighbours read together. No pass holds an array, however many slices and lights there are.
+// Values that the passes of variant S pass on, by ray of a strip of tiles (gpu/fogshop/airlight_pass.cpp, which defines
+// the sizes). A field of all rays is followed by the next field, so that neighbours read together. No pass holds an
+// array, for any number of slices and lights.
 layout(std430, binding = AT_RAY_VALUES) buffer RayValues { float ray_value[]; };
 uniform int ray_count;  // of the strip
 uniform int slice_count, node_count;  // uniforms, so that a shader is compiled once for all numbers of slices

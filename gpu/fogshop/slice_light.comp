@@ -23,7 +23,7 @@ float gaussian_depth(vec3 from, vec3 to) {
   return sum;
 }
 
-// What is known where a slice begins or ends: the ray parameter [m], depths from there to the camera and to the light.
+// Values where a slice begins or ends: the ray parameter [m], depths from there to the camera and to the light.
 struct Edge {
   float t, depth, shadow;  // the depth of both ways with the constant; that of the Gaussians towards the light alone
 };
@@ -93,7 +93,7 @@ void main() {
         pair_phase += angle.weighted;
         pair_angle += angle.plain;
       }
-      if (extrapolate != 0 && k % 2 == 0) {  // the same of two slices at a time
+      if (extrapolate != 0 && k % 2 == 0) {  // light of two slices at a time
         if (k > 0) {
           float angle = angle_of_slice(seen, h, pair.t, here.t).plain;
           half_sum += light_of_slice(phase_g == 0 ? angle : angle * pair_phase / max(pair_angle, 1e-30), h, pair, here,

@@ -14,8 +14,8 @@ uniform float clearest;  // least extinction_ratio above 0
 uniform int even_steps, light_steps;
 
 #if LIGHTS
-// The nodes in order: equal steps of the ray, and of the angle as seen from each light. Those of a light are (h, x) turned step by
-// step, the light's foot at x = 0.
+// Writes the nodes in order: equal steps of the ray, and of the angle as seen from each light. Nodes of a light are found by rotating
+// the vector (h, x) step by step, with the light's foot at x = 0.
 void write_nodes(int ray, vec3 origin, vec3 direction, float lo, float hi) {
   vec2 turned[LIGHTS], turn[LIGHTS];
   float next[LIGHTS];

@@ -78,7 +78,7 @@ void SurfaceShading::upload_tables(const scene::Scene& scene, const FogOnDevice&
       harmonics && std::any_of(lighting_.reflectances->tables().begin(), lighting_.reflectances->tables().end(),
                                [](const auto& table) { return table.has_value(); });
   const bool turned = tabulated && (environment || transfer);
-  // As many invocations as there is shared memory for what they hold (harmonics.glsl, transfer.glsl).
+  // The work group has as many rows of invocations as fit into shared memory (harmonics.glsl, transfer.glsl).
   const int order = model_.options.sh_order, rows = (turned ? 2 * (2 * order - 1) : 0) + order;
   const int held = 4 * (3 * rows + (transfer ? (tabulated ? 4 : 2) * order * order : 0));  // [B]
   int height = 8;
@@ -99,7 +99,7 @@ void SurfaceShading::upload_tables(const scene::Scene& scene, const FogOnDevice&
   program_ = &fog.program("fogshop/surfaces.comp", definitions);
 }
 
-// As many cells as their lists have room for.
+// Lists the Gaussians by direction, with as many cells as the lists have room for.
 void SurfaceShading::list_gaussians(const FogOnDevice& fog) {
   constexpr int group = 64;
   constexpr std::size_t most_bytes = std::size_t(64) << 20;
@@ -185,7 +185,7 @@ void SurfaceShading::shade(const FogOnDevice& fog, const FirstHits& hits, const 
     p.set("tree_center", tree->center());
     p.set("tree_far", tree->far());
   }
-  // As Geometry::offset_origin: 32 ulp of the largest coordinate, of what is seen too.
+  // Offset of Geometry::offset_origin: 32 ulp of the largest coordinate, the camera included.
   const double reach = std::max(magnitude_, view.camera.position.cwiseAbs().maxCoeff());
   p.set_double("nudge", 32 * std::numeric_limits<double>::epsilon() * reach);
   p.dispatch(view.width, view.height);

@@ -1,4 +1,4 @@
-// What the shader of surfaces reads that is precomputed: materials, and one buffer of tables, each at its place.
+// Precomputed input of the surface shader: materials, and one buffer with all tables.
 #pragma once
 #include <map>
 #include <string>

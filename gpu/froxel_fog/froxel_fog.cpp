@@ -27,7 +27,7 @@ struct SceneOnDevice {
   airlight::lit_media::Plan plan;
   ray_marcher::RayEnds ends;
   std::unique_ptr<lit_media::LitMedia> lit;       // null: nothing is to be seen
-  std::unique_ptr<ray_marcher::Picture> picture;  // likewise
+  std::unique_ptr<ray_marcher::Picture> picture;  // null: nothing is to be seen
 
   SceneOnDevice(Context& context, std::shared_ptr<const Scene> scene, const Options& options,
                 ray_marcher::GridStorage storage, Frame& frame, const Execution& execution)
@@ -71,13 +71,14 @@ class PreparedFogGpu final : public scene::Prepared {
   std::vector<scene::Stage> stages() const override;
   std::vector<scene::StageTime> prepare_times() const override { return times_; }
   scene::Rendering render(const View&, const Execution&) const override;
-  // Keeps on the device what still holds. As on the CPU, with reproject the last picture becomes the history of the next.
+  // Keeps on the device what is still valid. With reproject, the last picture becomes the history of the
+  // next, as on the CPU.
   std::optional<std::vector<scene::StageTime>> next(std::shared_ptr<const Scene>, const Execution&) override;
 
  private:
   // Prepares the scene's pictures. `next`: as the frame after the last one, else as the first frame.
   void take(std::shared_ptr<const Scene>, const Execution&, bool next);
-  // False where rounds were too few: the same again, looking.
+  // Returns false if there were too few rounds: draw again with `looks`.
   bool draw(const View&, const Execution&, bool looks, scene::Rendering&) const;
   void count(const View&, scene::Rendering&) const;
 

@@ -1,4 +1,4 @@
-// What host and shaders of froxel fog must agree about.
+// Constants and layouts shared by host and shaders of froxel fog.
 #pragma once
 #include <map>
 #include <string>
@@ -8,7 +8,7 @@
 namespace airlight::gpu::froxel_fog {
 
 // Storage blocks, AT_... in shaders, beside those of the media (0 to 4, 9, 14), of rounds (13) and of pixels (6), which
-// ray_marcher/interface.h numbers. What no shader has at the same time shares a number.
+// ray_marcher/interface.h numbers. Blocks that no shader uses together share a number.
 namespace at {
 enum Binding {
   light = 5,

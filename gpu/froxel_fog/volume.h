@@ -23,7 +23,7 @@ struct Froxels {
   std::unique_ptr<Buffer> slices;        // grid.glsl
 };
 
-// What ends camera rays; null: nothing.
+// Ends of camera rays; null: nothing ends them.
 struct Ends {
   const FirstHits* surfaces;
   const Backdrops* backdrops;

@@ -1,4 +1,4 @@
-// What host and shaders of the half-resolution march must agree about.
+// Constants and layouts shared by host and shaders of the half-resolution march.
 #pragma once
 #include <array>
 #include <map>

@@ -41,7 +41,7 @@ class Passes {
   std::size_t low_bytes(const scene::View&) const;
   // After Frame::finish: false where rounds were too few, and the picture must be drawn again.
   bool finished(const Download&) const;
-  // What the picture that finished last counted; nothing where no layer was wanted.
+  // Counters of the last finished picture; nothing if no layer was wanted.
   std::map<std::string, double> counters(const scene::View&, const Download&) const;
 
  private:

@@ -16,7 +16,7 @@ layout(std430, binding = AT_REGIONS) readonly buffer Regions { float regions[]; 
 uniform vec3 push_amounts[PUSHES];
 #endif
 
-// What forces change along an axis, as a scalar: its coefficient at a place of SIZE.
+// Change by forces along an axis, as a scalar: its coefficient at a place of SIZE.
 float force(int axis, int place) {
   float sum = 0;
 #if SCALARS > 0
@@ -28,7 +28,7 @@ float force(int axis, int place) {
   return sum;
 }
 
-// The same as a coefficient of the component along the axis.
+// The force as a coefficient of the velocity component along the axis.
 float pushed(int axis, int slab, int j, int k) {
   int index = axis == 0 ? slab : axis == 1 ? j : k, step_ = axis == 0 ? SLAB : axis == 1 ? NZ : 1;
   int first = slab * SLAB + j * NZ + k - index * step_;

@@ -8,7 +8,7 @@ uniform int diffuses, first_field;
 uniform vec3 per_area;                          // half size^-2 of each axis
 uniform float velocity_amount, carried_amount;  // of diffusion, times time [m^2]
 
-// Of mode (l, j, k): walls end all axes for the pressure, for diffusion a component's own.
+// Eigenvalue of mode (l, j, k). For the pressure all axes end at walls; for diffusion only a component's own axis does.
 float rate(int field, int l, int j, int k) {
   bool all = diffuses == 0;
   int x = all || field == 0 ? TABLE_WALL_RATES : TABLE_FREE_RATES, y = all || field == 1 ? TABLE_WALL_RATES : TABLE_FREE_RATES;

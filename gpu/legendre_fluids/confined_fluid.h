@@ -24,10 +24,11 @@ struct Regions {
   std::vector<Array> sources, pushes;
 };
 
-// What acts on the fluid before it moves in a step, or, in the opposite order, after it.
+// Influences on the fluid before it moves in a step; after it they act in the opposite order.
 struct Acting {
   double fades = 1;  // what decay leaves
-  // Of what is carried, in the order of its fields: what sources add, [source][field]; what 1 of it pushes [half sizes per second].
+  // For the carried fields, in their order: amounts added by sources, [source][field]; push per unit of
+  // a field [half sizes per second].
   std::vector<std::vector<double>> sources;
   std::vector<Vec3> weights;
   std::vector<Vec3> pushes;  // by force [half sizes per second]
@@ -49,13 +50,13 @@ class FluidOnDevice {
   void download(Fluid&) const;
   void upload(Fluid&);
 
-  // Coefficients of now: fields as fields.glsl has them. Another buffer after every step.
+  // Current coefficients, with the layout of fields.glsl. The buffer changes with every step.
   const Buffer& state() const { return *states_[current_]; }
-  // Those before the last step.
+  // Coefficients before the last step.
   const Buffer& before() const { return *states_[1 - current_]; }
-  // What shaders that read them are compiled with.
+  // Definitions for shaders that read the coefficients.
   const Definitions& definitions() const { return definitions_; }
-  // Those of Fluid::carried() that are fields, behind the velocity's components.
+  // Indices into Fluid::carried() of the fields that are stored after the velocity's components.
   const std::vector<std::size_t>& carried() const { return carried_; }
 
   // Parts of a step: the nearest velocity without divergence; diffusion of all over a time [s], divergence left; the rates of advection

@@ -27,7 +27,7 @@ float added_by_sources(int field, int place) {
   return sum;
 }
 
-// Of coefficient (i, j, k) at the end of a step.
+// Factor of filters and decay on coefficient (i, j, k) at the end of a step.
 float left_over(int field, int i, int j, int k) {
   float rate = field < D ? filters_velocity : filters_carried;
   float sum = number(TABLE_POWERS, i) + number(TABLE_POWERS, j) + number(TABLE_POWERS, k);

@@ -5,13 +5,13 @@
 #define SIZE (N * SLAB)
 #define LINES (POINTS * POINTS_Z)
 
-// Matrices by rows, four numbers at a time: tables.h says which, and where each begins. Those of L and of phi stand one after the other.
-// They are uniform, so all lines that are multiplied should ask for the same entry at a time: a line is an invocation's.
+// Matrices by rows, four numbers at a time: tables.h says which, and where each begins. The matrix for L is followed by the one for
+// phi. They are uniform, so all lines that are multiplied should read one entry at a time: each line belongs to one invocation.
 layout(std140, binding = AT_MATRICES) uniform Matrices { vec4 matrices[MATRICES]; };
 #define FOURS (ROW / 4)
 #define SQUARE_FOURS (SQUARE_ROW / 4)
 
-// Where that of a field along an axis begins: of phi along its own, else of L.
+// Start of a field's matrix along an axis: the one for phi along the component's own axis, else the one for L.
 int basis_at(int table, int field, int axis) { return table + (field == axis ? N * FOURS : 0); }
 int modes_at(int field, int axis) { return field == axis ? TABLE_WALL_MODES : TABLE_FREE_MODES; }
 float number(int table, int at) { return matrices[table + at / 4][at % 4]; }

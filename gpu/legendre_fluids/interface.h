@@ -1,4 +1,4 @@
-// What host and shaders of this method must agree about, said once.
+// Constants and layouts shared by host and shaders of this method.
 #pragma once
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@ namespace airlight::gpu::legendre_fluids {
 // Name of an entry of a uniform array.
 inline std::string at_index(const char* name, std::size_t i) { return fmt::format("{}[{}]", name, i); }
 
-// Storage blocks, AT_... in shaders. What no shader has at the same time shares a number.
+// Storage blocks, AT_... in shaders. Blocks that no shader uses together share a number.
 namespace at {
 enum Binding {
   start = 1,

@@ -15,7 +15,8 @@ struct DensityOnDevice {
   int coefficients;
   Box box;
 };
-// As for Flow::medium. Nothing for a flow of another solver, in two dimensions, or without that density.
+// The density of Flow::medium on the device. Nothing for a flow of another solver, in two dimensions, or
+// without that density.
 std::optional<DensityOnDevice> density_on_device(const scene::Flow&, int density = 0);
 
 class LegendreFluids final : public scene::Solver {

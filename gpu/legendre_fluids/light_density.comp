@@ -15,7 +15,7 @@ uint ordered(float v) {
 }
 float unordered(uint bits) { return uintBitsToFloat((bits & 0x80000000u) != 0u ? bits & 0x7fffffffu : ~bits); }
 
-// Of the limited polynomial, what is left of its distance from the mean.
+// Share that the limited polynomial keeps of its distance from the mean.
 float share(float mean) {
   float least = unordered(least_bits);
   least -= margin * (mean - least);

@@ -43,7 +43,7 @@ float density_at(int medium, vec3 at) {
 
 const float rounding = 2e-7;  // of sums in single precision, of the size of their terms
 
-// What rounding leaves of densities: they are sums of terms that cancel.
+// Rounding error of densities: they are sums of terms that cancel.
 float density_noise(int medium) {
   float squares = 0;
   for (int i = 0; i < NX * NY * FOURS_Z; ++i) {

@@ -37,7 +37,7 @@ vec4 depth_series[MEDIA * SERIES_FOURS], density_series[MEDIA * SERIES_FOURS];
 vec3 source_of[MEDIA], source_noise;
 
 #if NEGATIVE
-// What rounding leaves of a column towards the light [m].
+// Rounding error of a column towards the light [m].
 float noise_of(int m, vec3 rate) {
   float longest = 1e37;
   for (int a = 0; a < 3; ++a)

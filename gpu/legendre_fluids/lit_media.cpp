@@ -16,7 +16,7 @@ using scene::TensorShape;
 
 int fours(int n) { return (n + 3) / 4; }
 
-// That holds every medium's.
+// The smallest shape that holds every medium's shape.
 TensorShape shape_of(const LitMedia& media) {
   TensorShape shape{1, 1, 1};
   for (const LitMedium& m : media.media)
@@ -41,7 +41,7 @@ std::vector<float> coefficients_of(const LitMedia& media) {
   return values;
 }
 
-// What integrates along rays, by vectors of four.
+// Integration rule along rays, by vectors of four.
 class Rule {
  public:
   Rule(const LitMedia& media, const airlight::legendre_fluids::RayOptions& options, Definitions& definitions)

@@ -22,10 +22,10 @@ class LightMediaOnDevice {
                      const airlight::legendre_fluids::RayOptions&);
 
   int count() const { return int(media_.media.size()); }
-  // Of a program that includes light_media.glsl.
+  // Definitions for a program that includes light_media.glsl.
   const Definitions& definitions() const { return definitions_; }
   void bind(Program&, const Vec3& to_light) const;
-  // Is a density below 0 in places: rays take it as 0 there, by programs with NEGATIVE.
+  // Whether a density is below 0 somewhere: programs with NEGATIVE take it as 0 there.
   bool negative() const;
   // The density of a medium of n^3 coefficients becomes a field of a fluid's state, made positive where it is not; nothing leaves the device.
   // False, and nothing is done, where the medium has another shape or box.

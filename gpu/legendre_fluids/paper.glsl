@@ -27,7 +27,7 @@ void together() {
   barrier();
 }
 
-// Of all lanes, to all.
+// Sum over all lanes, returned to all of them.
 double total(double mine) {
   partial[lane] = mine;
   barrier();
@@ -58,7 +58,7 @@ void transform(int table, ivec2 steps, int rows, int columns, int outer, int inn
   together();
 }
 
-// Of any shape to the points, into `one`; `two` is used, too.
+// Transforms coefficients of any shape to the points. The result is in `one`; `two` is overwritten.
 void to_points(ivec3 shape, ivec3 table, ivec3 row_steps, ivec3 column_steps, int from, int one, int two) {
   transform(table.x, ivec2(row_steps.x, column_steps.x), M.x, shape.x, 1, shape.y * shape.z, from, one);
   transform(table.y, ivec2(row_steps.y, column_steps.y), M.y, shape.y, M.x, shape.z, one, two);

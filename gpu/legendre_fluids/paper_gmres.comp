@@ -73,7 +73,7 @@ void step_on() {
 
 void main() {
   for (int s = 0; s < steps; ++s) {
-    if (DONE != 0) break;  // the same for all lanes
+    if (DONE != 0) break;  // uniform over all lanes
     step_on();
   }
   if (ends == 0) return;

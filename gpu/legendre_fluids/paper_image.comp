@@ -50,7 +50,7 @@ float series(int first, ivec3 shape, vec3 at) {
 
 vec3 local(dvec3 x) { return vec3((2 * x - box_low - box_high) / (box_high - box_low)); }
 
-// Of the series from `first` on of a system, in channels.
+// Value, for each channel, of the series that begins at `first` of the channel's system.
 vec3 all_series(int first, ivec3 shape, vec3 at) {
   vec3 value;
   for (int c = 0; c < 3; ++c) {

@@ -1,5 +1,5 @@
-// What is kept of solutions: E_d as it is, or of E_s its series everywhere and on the three faces towards the camera (eq. 24), by
-// polynomials P without a norm, in single precision. And what became of each system.
+// Keeps solutions: E_d unchanged, or, for E_s, the series everywhere and on the three faces towards the camera (eq. 24), by polynomials
+// P without a norm, in single precision. Also keeps the status of each system.
 #include "legendre_fluids/paper.glsl"
 layout(std430, binding = AT_DIRECT) buffer Direct { double direct[]; };
 layout(std430, binding = AT_FACES) writeonly buffer Faces { float faces[]; };  // of a system: everywhere, then x, y, z

@@ -37,7 +37,8 @@ TensorShape add_tables(const std::array<Eigen::MatrixXd, 3>& tables, std::vector
   return begins;
 }
 
-// Of a shape whose axes become those of another, one after the other: the most numbers on the way.
+// Greatest size of an intermediate result, when the axes of one shape are transformed one after another
+// to those of another shape.
 int most_on_the_way(const TensorShape& from, const TensorShape& to) {
   return std::max(
       {scene::tensor_size(from), to[0] * from[1] * from[2], to[0] * to[1] * from[2], scene::tensor_size(to)});
@@ -177,7 +178,7 @@ void PaperSystems::lay_out_work(const DensityProduct& product) {
       Contents::undefined);
 }
 
-// Of the lights, then of the view.
+// Uploads the directions of the lights, then of the view.
 void PaperSystems::set_directions(const Vec3& view) {
   std::vector<double> all;
   for (std::size_t d = 0; d <= lights_.size(); ++d) {

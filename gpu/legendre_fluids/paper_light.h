@@ -31,14 +31,15 @@ class PaperSystems {
   // before.
   bool take(const DensityOnDevice&);
 
-  // As many steps as the last of each kind took, and what frame.download says of them goes to keep_up().
+  // Runs as many steps as the last solve of each kind took. The statistics in frame.download go to keep_up().
   void solve_direct(Frame& frame) { solve(direct_, frame); }
   void solve_scattered(Frame&, const Vec3& direction);
-  // True: all that was solved in this frame has converged. False: later ones take more steps. Throws Error where none would do.
+  // True if all solves of this frame have converged. False: later solves take more steps. Throws Error
+  // if more steps would not help.
   bool keep_up(const Frame&);
   int iterations() const { return direct_.iterations + scattered_.iterations; }  // of the frame that was looked at last
 
-  // E_s towards the camera, and the density: what paper_image.comp reads. Of each channel.
+  // E_s towards the camera, for each channel, and the density: input of paper_image.comp.
   const Buffer& faces() const { return *faces_; }
   const Definitions& definitions() const { return definitions_; }
   std::array<int, 3> system_of() const { return system_of_; }
@@ -77,7 +78,7 @@ class PaperSystems {
   Definitions definitions_;
   std::vector<double> extinctions_;     // different ones
   std::array<int, 3> extinction_of_{};  // of each channel
-  std::array<int, 3> system_of_{};      // likewise, of E_s
+  std::array<int, 3> system_of_{};      // of each channel, for E_s
   Rgb scale_ = Rgb::Ones();
   std::vector<double> tables_;
   std::size_t directions_at_ = 0;

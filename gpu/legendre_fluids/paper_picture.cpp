@@ -27,7 +27,7 @@ constexpr int most_loops = 50000;  // of a ray's column: llvmpipe ends all loops
 
 int column_points(const scene::TensorShape& density) { return (density[0] + density[1] + density[2] - 3) / 2 + 1; }
 
-// What paper_image.comp needs for columns.
+// Definitions of paper_image.comp for columns.
 void define_columns(const scene::TensorShape& density, bool ends, Definitions& definitions) {
   definitions["ENDS"] = ends ? "1" : "0";
   const scene::LegendrePoints& rule = scene::legendre_points(column_points(density));

@@ -5,7 +5,7 @@ uniform int scatters;
 uniform double amounts[SYSTEMS * LIGHTS];  // of each light: scattering along the ray per density [1/m]
 uniform int extinctions[SYSTEMS], scatterers[SYSTEMS];
 
-// What stands on the right for light 1 that comes in: on a face a constant has one coefficient, twice its value.
+// Right side for inflowing light of 1: on a face a constant has one coefficient, twice its value.
 double inflow_side(int e) {
   ivec3 index = index_of(e);
   double sum = 0;

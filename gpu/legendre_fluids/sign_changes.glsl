@@ -11,7 +11,7 @@ void series_of(int medium, vec3 middle, vec3 slope, out vec4 c[SERIES_FOURS]) {
   }
 }
 
-// Of the polynomial at z: value, slope, integral from -1.
+// Value, slope, and integral from -1, of the polynomial at z.
 vec3 of_series(vec4 c[SERIES_FOURS], float z) {
   float before = 0, p = 1, slope_before = 0, slope = 0;
   vec3 sum = vec3(0);

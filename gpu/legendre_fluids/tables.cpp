@@ -35,7 +35,7 @@ Tables::Tables(const ConfinedSpace& space, double filter_order) {
   number("ROW", (points + 3) / 4 * 4);
   number("SQUARE_ROW", (n + 3) / 4 * 4);
   const ConfinedSpace::Matrices m = space.matrices();
-  // Of L, then of phi; functions by rows, points by columns.
+  // Matrices for L, then for phi; functions by rows, points by columns.
   begin("VALUES");
   rows(m.at_points[0].transpose());
   rows(widened(m.at_points[1].transpose(), true, false));

@@ -16,7 +16,7 @@ using airlight::legendre_fluids::ConfinedSpace;
 
 class Tables {
  public:
-  // Of a space with n > 1. Filters damp coefficient k of an axis by exp(-rate (k / (n-1))^filter_order t).
+  // Tables for a space with n > 1. Filters damp coefficient k of an axis by exp(-rate (k / (n-1))^filter_order t).
   Tables(const ConfinedSpace&, double filter_order);
 
   // A uniform block, within the 16 KiB that OpenGL promises for n up to most_coefficients.

@@ -1,4 +1,4 @@
-// What host and shaders of light maps must agree about.
+// Constants and layouts shared by host and shaders of light maps.
 #pragma once
 #include <map>
 #include <string>

@@ -45,7 +45,7 @@ class LightMaps {
 
  private:
   struct Part;
-  // What the steps of a light's rays leave, what is kept of the nodes of curves, the parts of media, and waves.
+  // Working memory: steps of a light's rays, nodes of curves, parts of media, and waves.
   struct Work {
     std::unique_ptr<Buffer> steps, nodes, parts, waves;
   };

@@ -1,4 +1,4 @@
-// What media swallow and scatter at a point of a camera ray: reference/lit_media. Places are relative to the media's middle.
+// Extinction and scattering of media at a point of a camera ray: reference/lit_media. Places are relative to the media's middle.
 //
 //   vec3 extinction = lit_extinction(x);                                         // [1/m]; keeps the densities at x
 //   for (int l = 0; l < lit_lights; ++l) source += lit_source(l, x, direction);  // [W/m^3/sr], of those densities

@@ -1,4 +1,4 @@
-// What ends the rays of a view, one invocation a ray (gpu/raster/first_hits.h).
+// The ends of the rays of a view, one invocation per ray (gpu/raster/first_hits.h).
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "raster/view.glsl"
 #include "raster/triangles.glsl"
@@ -38,8 +38,8 @@ void keep_nearer(inout First best, double t, int primitive) {
   best = First(rounded, primitive);
 }
 
-// Twice the area of (0, p, q); `side` is its sign, on a tie that after moving the origin by (e, e^2), e -> 0. The same for both
-// triangles at an edge, but for the sign: so they are computed as they stand.
+// Twice the area of (0, p, q). `side` is its sign; a tie is broken by moving the origin by (e, e^2), e -> 0. The triangles at an edge
+// must get values of equal size and opposite sign, therefore the products are computed exactly as written.
 double edge(dvec3 p, dvec3 q, out int side) {
   precise double left = p.x * q.y, right = p.y * q.x;
   precise double value = left - right;

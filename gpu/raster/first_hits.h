@@ -1,8 +1,9 @@
-// What ends the camera rays: scene::ray_end for every pixel centre, written into storage buffers on the device.
+// The ends of the camera rays: scene::ray_end for every pixel centre, written into storage buffers on the device.
 //
-// Way::tree, a compute shader: boxes and triangles are passed over in single precision, with room for its rounding; what
-// may be met is met in double precision, by the test of scene/geometry/ray_primitive, and kept as a float. So no pixel
-// shows what its centre's ray misses. Of surfaces at one distance, as floats, the first in the scene is taken.
+// Way::tree, a compute shader: boxes and triangles are skipped in single precision, with a margin for rounding.
+// Candidates are intersected in double precision, by the test of scene/geometry/ray_primitive, and the distance is
+// stored as a float. So no pixel shows what its centre's ray misses. If surfaces have equal distances as floats, the
+// first in the scene is taken.
 //
 // Way::raster, a raster pass (raster_pass.h): the rasteriser decides what a pixel shows, to 1/256 pixel at silhouettes;
 // where it is met is computed in double precision too.

@@ -1,4 +1,4 @@
-// What a fragment leaves behind, and the order of fragments.
+// Output of a fragment, and the order of fragments.
 layout(location = 0) out float out_distance;  // along the ray [m]
 layout(location = 1) out uint out_primitive;  // triangles in their order, then solids
 uniform int block;                            // pixels to the side of what a fragment stands for

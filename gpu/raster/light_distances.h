@@ -1,5 +1,5 @@
-// What every point or spot light sees: light-distance maps, cube maps of first distances and of the primitives that are
-// met.
+// Views from every point or spot light: light-distance maps, cube maps of first distances and of the
+// primitives that are met.
 //
 // Six raster passes per light, by the code of the camera's (first_hits.h): no near plane and no bias. Distances are
 // those along the rays through the texels' centres. Shadows (raster/light_distances.glsl) compare no distances: they

@@ -1,4 +1,5 @@
-// What a pixel shows, met by its ray again in double precision: the numbers that raster passes leave, triangles first.
+// The primitive that a pixel shows, intersected again with its ray in double precision: by the numbers that raster
+// passes leave, triangles first.
 #include "raster/triangles.glsl"
 #include "raster/solids.glsl"
 

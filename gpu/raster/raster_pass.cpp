@@ -21,7 +21,7 @@ Interval seen_range(double x, double z, double r, bool perspective) {
   return {(x * z - root) / below, (x * z + root) / below};
 }
 
-// Of the film in what the rays cover, to each side.
+// Share of the film in the area that the rays cover, along each side.
 struct Share {
   double x, y;
 };

@@ -1,9 +1,9 @@
 // First hits by the rasteriser (first_hits.h).
 //
-// Which surface a pixel shows is decided to a fraction of a pixel at silhouettes. Where it is met is computed for the
-// pixel's own ray in double precision, from the triangle's plane or the sphere or plane itself, and kept as floats.
-// There is no near plane (raster/mesh.vert) and none farther than which something is lost (raster/hit.glsl). Of surfaces
-// closer to each other than 2^-24 of their distance the first in the scene is taken.
+// Which surface a pixel shows is decided to a fraction of a pixel at silhouettes. The hit point is computed for the
+// pixel's own ray in double precision, from the triangle's plane or the sphere or plane itself, and stored as floats.
+// There is no near plane (raster/mesh.vert), and the far plane loses nothing (raster/hit.glsl). If surfaces are closer
+// to each other than 2^-24 of their distance, the first in the scene is taken.
 #pragma once
 #include <memory>
 #include <vector>
@@ -38,7 +38,7 @@ class RasterPass {
   // Throws Unavailable where the device's vertex shaders read no storage buffers.
   explicit RasterPass(Context&);
 
-  // As FirstHits::find, of buffers that are large enough.
+  // Like FirstHits::find, with buffers that are large enough.
   void find(const SurfacesOnDevice&, const scene::View&, const Buffer& distances, const Buffer* primitives,
             const HitGrid&);
 

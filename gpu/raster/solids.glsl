@@ -21,7 +21,7 @@ double meet_solid(Solid s, dvec3 origin, dvec3 direction, out dvec3 normal) {
   normal = direction;
   if (!(passing < r)) return 0;  // a tangent does not cross
   double half_chord = sqrt((r - passing) * (r + passing));
-  // Of the two roots one may cancel; their product is the power of the origin.
+  // One of the two roots can cancel. Their product is the power of the origin, which gives the other root without cancellation.
   double distance_ = length(offset), power = (distance_ - r) * (distance_ + r);
   double far = along >= 0 ? along + half_chord : along - half_chord;
   double near = far != 0 ? power / far : 0.0LF;

@@ -53,9 +53,9 @@ bool meets_box(TreeRay ray, int node, float until) {
   return max(max(first.x, first.y), max(first.z, 0)) <= min(min(last.x, last.y), min(last.z, until));
 }
 
-// Walks on from `node` to a leaf before node `last` that the ray meets before `until` [m]: 8 * first triangle + their number, 0 if
-// there is none among the next 16 nodes. What is done with a leaf comes after this loop, not in it: llvmpipe runs through the body
-// of a condition that no invocation meets. COUNT_NODE, if defined, is done about as often as a loop goes round.
+// Walks on from `node` to a leaf before node `last` that the ray meets before `until` [m]. Returns 8 * first triangle + their number,
+// or 0 if there is no leaf among the next 16 nodes. Leaves are processed after this loop, not in it: llvmpipe runs through the body of
+// a condition that no invocation meets. COUNT_NODE, if defined, is done about as often as a loop goes round.
 int next_leaf(TreeRay ray, inout int node, int last, float until) {
   int leaf = 0;
   COUNT_NODE

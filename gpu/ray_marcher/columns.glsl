@@ -3,7 +3,7 @@
 uint shadow_step_count = 0;  // density evaluations of this invocation
 
 #if DEPTHS > 0
-// What the constant of layer k has of a ray that is clipped to the region [m].
+// Column of layer k's constant along a ray that is clipped to the region [m].
 float constant_column(int k, vec2 t) {
   return layers[k].constant > 0 && t.x < t.y ? min(layers[k].constant * min(t.y - t.x, endless), endless) : 0;
 }
@@ -156,7 +156,7 @@ float deep_column(int k, vec3 o, vec3 d, vec2 t) {
 }
 #endif
 
-// Of layer k from x over a distance in a unit direction [m].
+// Column of layer k from x over a distance in a unit direction [m].
 float column_of(int k, vec3 x, vec3 direction, float distance_) {
   vec2 t = clip_region(k, x, direction, vec2(0, distance_));
   if (!(t.x < t.y)) return 0;

@@ -31,7 +31,7 @@ class Columns {
              const std::function<bool(double)>& progress);
 
   const light_map::LightMaps* maps() const { return maps_.get(); }  // null: there are none
-  // What a program that includes columns.glsl needs: DEPTHS, and of maps what look_up.glsl needs.
+  // Definitions for a program that includes columns.glsl: DEPTHS, and for maps those of look_up.glsl.
   std::map<std::string, std::string> definitions() const;
   // Binds storage blocks 0 (maps) and 4 (lights), sets the uniforms; `options` of columns, not read of maps.
   void bind(LinkedProgram&, const airlight::ray_marcher::Options& options = {}) const;

@@ -1,4 +1,4 @@
-// What host and shaders of the ray marcher must agree about, said once; the structures are in scene_data.h.
+// Constants and layouts shared by host and shaders of the ray marcher; the structures are in scene_data.h.
 #pragma once
 #include <map>
 #include <string>
@@ -7,8 +7,9 @@
 
 namespace airlight::gpu::ray_marcher {
 
-// Storage blocks, AT_... in shaders. gpu/raster has 10 to 12 and 14 (surfaces, the tree), gpu/common 9 (values of an
-// environment). What no shader has at the same time shares a number. `layers` is a uniform block, beside a storage block 0.
+// Storage blocks, AT_... in shaders. gpu/raster has 10 to 12 and 14 (surfaces, the tree), gpu/common 9
+// (values of an environment). Blocks that no shader uses together share a number. `layers` is a uniform
+// block, beside a storage block 0.
 namespace at {
 enum Binding {
   layers = 0,

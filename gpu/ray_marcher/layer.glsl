@@ -47,7 +47,7 @@ layout(binding = 0) uniform sampler3D grid_texture[TEXTURES];
 #else
 layout(std430, binding = AT_GRID_VALUES) readonly buffer GridValues { float grid_value[]; };      // x fastest
 #endif
-// Of each brick of 4^3 cells [cells]; -1: not empty.
+// Free distance of each brick of 4^3 cells [cells]; -1: not empty.
 layout(std430, binding = AT_FREE_DISTANCES) readonly buffer FreeDistances { float free_distance[]; };
 #endif
 
@@ -93,7 +93,7 @@ vec2 clip_region(int k, vec3 x, vec3 direction, vec2 t) {
   float reach = sqrt(inside / dd);
   return vec2(max(t.x, nearest - reach), min(t.y, nearest + reach));
 }
-// Of a ray that is clipped to the region already.
+// The part of a ray that is in the field of layer k. The ray is already clipped to the region.
 vec2 clip_field(int k, vec3 x, vec3 direction, vec2 t) {
   return clip_box(layers[k].lo, layers[k].hi, to_local(layers[k].field_frame, x),
                   rotate_to_local(layers[k].field_frame, direction), t);

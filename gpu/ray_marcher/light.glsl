@@ -27,7 +27,7 @@ Approach approach(Light light, vec3 origin, vec3 direction) {
   return a;
 }
 
-// Of a spot, 1 for the others.
+// Falloff of a spot light towards its edge; 1 for other lights.
 float falloff(Light light, vec3 to_light) {
   if (light.kind != light_spot) return 1;
   float cosine = -dot(to_light, light.axis), width_ = light.cos_inner - light.cos_outer;

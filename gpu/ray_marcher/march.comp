@@ -25,7 +25,7 @@ vec3 airlight = vec3(0);
 uint step_count = 0, shadow_ray_count = 0, occlusion_ray_count = 0;
 uint own_marches[BALL_WORDS];  // bit l: light l has a march of its own on this ray
 
-// Of the march under way: where it is, its optical depth, whether it was too dark to go on.
+// State of the current march: position, optical depth, and whether it ended because it became too dark.
 int at_part, at_light;
 float at_step;
 float at_from, at_width;  // within the step: divided where it is deep
@@ -55,7 +55,7 @@ float free_run(int k, vec3 start, vec3 delta, float i) {
   return -1 - floor(max(run, 0));
 }
 
-// The same for all grids of a part: > 0 steps that must be taken, < 0 steps that may be left out.
+// Free run over all grids of a part: > 0 steps that must be taken, < 0 steps that may be skipped.
 float grids_run(Part part, vec3 start, vec3 delta, float i) {
   float taken = 0, free = 1e9;
   for (int k = 0; k < layer_count; ++k) {

@@ -22,7 +22,7 @@ bool solid_between(Solid s, vec3 origin, vec3 direction, float t_end) {
   float along = dot(offset, direction), passing = length(offset - along * direction);
   if (!(passing < s.radius)) return false;
   float half_chord = sqrt((s.radius - passing) * (s.radius + passing));
-  // Of the two roots one may cancel; their product is the power of the origin.
+  // One of the two roots can cancel. Their product is the power of the origin, which gives the other root without cancellation.
   float far = along >= 0 ? along + half_chord : along - half_chord, distance_ = length(offset);
   float near = far != 0 ? (distance_ - s.radius) * (distance_ + s.radius) / far : 0;
   return (near > 0 && near < t_end) || (far > 0 && far < t_end);

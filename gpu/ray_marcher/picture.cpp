@@ -68,7 +68,7 @@ void Picture::reflect(const scene::View& view, const FilmOnDevice& film, FrameBu
   p.set("triangle_count", first_hits_->surfaces().triangles());
   p.set("light_count", lights_);
   p.set_double("middle", media_.middle());
-  // As Geometry::offset_origin.
+  // Offset of Geometry::offset_origin.
   const double reach = std::max(magnitude_, view.camera.position.cwiseAbs().maxCoeff());
   p.set_double("nudge", 32 * std::numeric_limits<double>::epsilon() * reach);
   set_view(p, view);

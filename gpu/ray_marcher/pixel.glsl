@@ -1,4 +1,4 @@
-// What the device knows of a pixel. A dispatch does a limited amount of work for each and leaves here where to go on.
+// State of a pixel on the device. A dispatch does a limited amount of work for each pixel and stores here where to continue.
 struct Pixel {
   vec3 airlight;
   uint steps;  // density evaluations on the camera ray

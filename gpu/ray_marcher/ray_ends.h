@@ -1,4 +1,4 @@
-// What ends the camera rays of a scene on the device, and the film's layers that it begins with.
+// The ends of a scene's camera rays on the device, and the initial layers of the film.
 #pragma once
 #include <memory>
 #include <vector>

@@ -11,7 +11,7 @@ class RayMarcher final : public scene::Renderer {
   std::string about() const override;
   std::string device() const override { return Context::name_of_device(); }
   std::vector<scene::SettingSpec> settings() const override;
-  // What the CPU refuses; and, one line each, what the shaders do not do.
+  // Reasons of the CPU, and limits of the shaders, one line each.
   std::vector<std::string> supports(const scene::Scene&, const scene::Settings&) const override;
   // Throws Unavailable without a device, or where it has no room.
 

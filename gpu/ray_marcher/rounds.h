@@ -20,8 +20,8 @@ class Rounds {
 
   Rounds(Context& context, std::string name) : context_(context), name_(std::move(name)) {}
 
-  // Of the next frame: looks at every round if `looks`, or if none was looked at yet; with `progress`, in dispatches of
-  // about a tenth of a second.
+  // Begins a frame. With `looks`, or if no frame was looked at yet, the host checks every round. With `progress`,
+  // dispatches take about a tenth of a second.
   void begin(bool looks, const std::function<bool(double done)>& progress);
   // All tiles of an image, or of a band of it; its buffers are bound, binding 13 is this one's. Throws scene::Interrupted
   // if asked to stop.

@@ -98,8 +98,8 @@ float measure_of_all() {
 }
 
 void cut_ray(vec3 origin, vec3 direction, float t_end) {
-  // In lists of the parts: cuts stand in front of those that are made of them. Of each layer where its constant is, and where
-  // it varies.
+  // Cuts and ranges are stored in the lists of the parts: cuts stand in front of the parts made from them. For each layer there is a
+  // range where its constant holds, and one where it varies.
   int cut_count = 0;
   for (int k = 0; k < layer_count; ++k) {
     vec2 whole = clip_region(k, origin, direction, vec2(0, t_end));

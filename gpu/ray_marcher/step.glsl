@@ -6,7 +6,7 @@ bool all_above(vec3 x, float limit) { return all(greaterThan(x, vec3(limit))); }
 
 LIST(float, density_here, LAYERS);  // of each layer at a step
 
-// What a step sends to the camera of one light's radiance; x as for incidence().
+// Light of one lamp that a step scatters to the camera; x as for incidence().
 void scatter(int l, Approach a, float x, vec3 point, vec3 direction, float length_, vec3 weight) {
   Light light = lights[l];
   Incidence from = incidence(light, a, x, direction, length_);

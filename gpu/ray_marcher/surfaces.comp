@@ -34,7 +34,7 @@ vec3 transmittance_to(int l, int own, dvec3 point, vec3 towards, dvec3 to_light,
   return exp(-depth_towards(l, vec3(point - middle), towards, float(min(distance_, 1e37LF))));
 }
 
-// Of one light, reflected by primitive `own` [W/m^2/sr].
+// Light of one lamp, reflected by primitive `own` [W/m^2/sr].
 vec3 reflected(int l, int own, Material material, dvec3 point, dvec3 normal, vec3 to_view) {
   Light light = lights[l];
   dvec3 to_light = dvec3(light.axis);

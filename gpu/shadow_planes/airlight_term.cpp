@@ -14,7 +14,7 @@ namespace {
 using airlight::shadow_planes::extinction_of;
 using airlight::shadow_planes::Options;
 
-// What a region is made of, as media.glsl.
+// Numbers of a region, laid out as in media.glsl.
 struct RegionNumbers {
   RegionKind kind;
   Vec3 lo = Vec3::Zero(), hi = Vec3::Zero();

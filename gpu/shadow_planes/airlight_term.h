@@ -1,4 +1,5 @@
-// What airlight.glsl reads: media, the evaluator's numbers, and which air of which light (methods/shadow_planes/airlight_term.h).
+// Input of airlight.glsl: media, the evaluator's numbers, and the term for each light
+// (methods/shadow_planes/airlight_term.h).
 #pragma once
 #include <map>
 #include <memory>
@@ -21,7 +22,7 @@ class AirlightTermsOnDevice {
   // The paper's medium in a region that an air is, null if it is none.
   const scene::Region* region(int term) const;
 
-  // Of a program that includes airlight.glsl or media.glsl; `term` -1: there is no medium.
+  // Definitions for a program that includes airlight.glsl or media.glsl; `term` -1: there is no medium.
   std::map<std::string, std::string> definitions(int light, int term) const;
   // Binds media and the evaluator, sets their uniforms and those of ray.glsl.
   void bind(LinkedProgram&, int light, int term) const;

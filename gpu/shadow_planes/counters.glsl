@@ -1,5 +1,5 @@
-// Of a frame. Every dispatch that may leave pixels unfinished writes the groups of the one that goes on with them; the first are those
-// that no dispatch has gone on with.
+// Counters of a frame. Every dispatch that may leave pixels unfinished writes the group counts of the dispatch that continues them. The
+// first entry is for pixels that no dispatch has continued.
 layout(std430, binding = AT_COUNTERS) buffer Counters {
   uint lit_parts, crossings, gatherings_after_first;
   uint loops_were_cut;  // the picture is wrong (common/loops_cut.glsl)

@@ -29,7 +29,8 @@ bool is_below(dvec3 y, dvec3 a, int number_of_a, dvec3 b, int number_of_b) {
   return number_of_a < number_of_b ? precise_dot(y, precise_cross(a, b)) < 0 : !(precise_dot(y, precise_cross(b, a)) < 0);
 }
 
-// Of a triangle in whose plane the light lies: rays from there may or may not meet it. The same sides as the silhouette's.
+// For a triangle whose plane contains the light: rays from the light may or may not meet it. Edges and sides follow the
+// conventions of the silhouette.
 bool is_behind(ivec3 numbers, dvec3 a, dvec3 b, dvec3 c, dvec3 y) {
   if (!faces_light(a, b, c)) {  // turned to face the light: the shadow is on the negative side of each edge
     dvec3 other = b;
@@ -54,7 +55,7 @@ bool is_crossed(int triangle, Shear shear, dvec3 y, double end) {
   return t > 0 && t < end;
 }
 
-// Of the triangles below the nodes from `node` on, before `last`, which have their order in memory.
+// Number of crossed triangles below the nodes from `node` on, before `last`, in the order of memory.
 int crossed_triangles(dvec3 y, double end, int node, int last) {
   int sum = 0;
   dvec3 direction = y / end;

@@ -11,9 +11,9 @@ layout(std430, binding = AT_LISTS) readonly buffer Lists {
 };
 uniform int solid_count, edge_split;
 
-// Of every invocation, slot by slot: in registers they would spill. `hit_order` has the slots in the order of keys, 4 bits each, so
-// that sorting moves nothing in memory. A crossing's name tells all but its key: twice the edge, + 1
-// where the ray leaves a shadow; of spheres ~(twice the crossing's number, + 1 where it enters).
+// Crossings of every invocation, slot by slot, in shared memory because registers would spill. `hit_order` has the slots in the order
+// of keys, 4 bits each, so that sorting moves nothing in memory. A crossing's name tells all but its key: twice the edge, + 1 where the
+// ray leaves a shadow; for spheres ~(twice the crossing's number, + 1 where the ray enters).
 shared double hit_key[MOST_HITS * LOCAL_SIZE_X * LOCAL_SIZE_Y];
 shared int hit_name[MOST_HITS * LOCAL_SIZE_X * LOCAL_SIZE_Y];
 uvec2 hit_order;
@@ -21,7 +21,7 @@ int place_in_memory(int slot) { return slot * LOCAL_SIZE_X * LOCAL_SIZE_Y + int(
 int nth_slot(int n) { return int((n < 8 ? hit_order.x : hit_order.y) >> 4 * (n & 7) & 15u); }
 int slot_of(int hit) { return place_in_memory(nth_slot(hit)); }
 
-// As the n-th; what is behind moves by one, the last of MOST_HITS drops out.
+// Inserts a slot as the n-th. Later slots move by one; the last of MOST_HITS is dropped.
 void insert_slot(int n, int slot) {
   uint word = n < 8 ? hit_order.x : hit_order.y, before = (1u << 4 * (n & 7)) - 1u;
   word = (word & before) | uint(slot) << 4 * (n & 7) | (word & ~before) << 4;
@@ -110,7 +110,7 @@ void cross_edge(Ray ray, double end, int e, dvec3 side, Wedge wedge) {
   keep_crossing(key, 2 * e + int(leaves), leaves ? -edges[e].multiplicity : edges[e].multiplicity, place);
 }
 
-// Of the edges that the ray may cross: those of its sectors in the fan.
+// Crossings of the edges in the ray's sectors of the fan: only these edges may be crossed.
 void cross_edges(Ray ray, double end) {
   if (!(ray.h > 1e-12LF * length(ray.to_light))) return;
   dvec3 side = cross(ray.direction, ray.to_light);
@@ -148,7 +148,7 @@ double next_place(SphereShadow s, double place, double end) {
   return next;
 }
 
-// What a ball hides from the light is convex: one stretch of the ray, which ends on the tangent cone or on the ball.
+// The shadow of a ball is convex: one stretch of the ray, which ends on the tangent cone or on the ball.
 void cross_spheres(Ray ray, double end) {
   end *= 1 - 1e-10LF;  // where the ray ends on a ball it does not enter it, whatever rounding says
   for (int i = 0; i < solid_count; ++i) {

@@ -1,5 +1,5 @@
-// Which side of a triangle a light sees: methods/shadow_planes/silhouette.h. `precise`: every invocation that asks for a triangle
-// must have the same answer, and so must the count of surfaces.
+// The side of a triangle that a light sees: methods/shadow_planes/silhouette.h. `precise`: every invocation that asks for a triangle
+// must get an equal answer, and so must the count of surfaces.
 
 dvec3 precise_cross(dvec3 a, dvec3 b) {
   precise dvec3 result = a.yzx * b.zxy - a.zxy * b.yzx;

@@ -1,4 +1,4 @@
-// What host and shaders of this method must agree about, said once: numbers that shaders get as definitions.
+// Constants and layouts shared by host and shaders of this method: shaders get the numbers as definitions.
 #pragma once
 #include <map>
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace airlight::gpu::shadow_planes {
 
-// Storage blocks, AT_... in shaders. gpu/raster has 10 to 12 and 14 (surfaces, the tree), gpu/common 2 (materials). What no
-// shader has at the same time shares a number; the largest has 12.
+// Storage blocks, AT_... in shaders. gpu/raster has 10 to 12 and 14 (surfaces, the tree), gpu/common 2 (materials).
+// Blocks that no shader uses together share a number; the largest shader has 12.
 namespace at {
 enum Binding {
   edges = 0,
@@ -76,13 +76,13 @@ struct alignas(32) MediumData {
   int region;
 };
 
-// That of light_state.glsl.
+// Layout of light_state.glsl.
 struct LightStateData {
   int edge_count, count_at_camera;
   unsigned edge_groups[3], plane_groups[3];
 };
 
-// That of counters.glsl, with the first of resume_groups.
+// Layout of counters.glsl, with the first entry of resume_groups.
 struct CountersData {
   unsigned lit_parts, crossings, gatherings_after_first, loops_were_cut, values_missing, unused[3], unfinished[4];
 };

@@ -1,4 +1,4 @@
-// What lights leave in the pixels of a picture.
+// Light of all lamps in the pixels of a picture.
 struct LitPixel {
   vec4 airlight, reflected;  // rgb
 };

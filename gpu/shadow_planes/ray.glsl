@@ -1,7 +1,7 @@
 // A ray as a light is seen from it: methods/shadow_planes/light_from_ray.h, and where it meets cones. In double precision.
 uniform dvec3 light;  // [m]
 
-// What of a ray lives across loops: the rest is cheap to compute again and takes 20 registers.
+// The part of a ray that lives across loops: the rest is cheap to compute again and would take 20 registers.
 struct Line {
   dvec3 origin, direction;  // the latter unit
 };

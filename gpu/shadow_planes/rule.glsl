@@ -14,8 +14,8 @@ struct Mapped {
   float s1, rest;  // s runs from 0 to s1 = 1 - rest
 };
 
-// Lit over `length_` [m] from d0 [m] beyond the foot point; `width` of the phase function. What falls by e^-depth_cut with
-// `slowest` instead of the extinction is left out.
+// Maps a lit part of `length_` [m] that begins at d0 [m] beyond the foot point; `width` is that of the phase function. The end of the
+// part is cut off where e^(-slowest distance) is below e^-depth_cut.
 Mapped map_part(float width, float extinction, float slowest, float d0, float length_, float h) {
   Mapped map;
   map.h = h;

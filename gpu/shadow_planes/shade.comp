@@ -58,7 +58,7 @@ bool meets_air(Line line, double end) {
 #endif
 
 #if SURFACES
-// What a surface reflects of the light, without what is lost on the way to the eye.
+// Light that a surface reflects, without the loss on the way to the eye.
 vec3 reflected_light(Line line, double end, int surface, dvec3 normal) {
   if (dot(normal, line.direction) > 0) normal = -normal;
   dvec3 offset = light - line.origin - end * line.direction;
@@ -97,7 +97,7 @@ void shade(ivec2 pixel, int place) {
 #endif
   Work work;
   State state = begin_state(place, m);
-  if (frame_buffer != 0 && resume == 0 && adds != 0) state.sum.rgb = lit_pixels[place].airlight.rgb;  // that of all lights
+  if (frame_buffer != 0 && resume == 0 && adds != 0) state.sum.rgb = lit_pixels[place].airlight.rgb;  // airlight of all lights so far
   vec3 in_air = airlight_of(line, end, primitive, m, state, m_end, work);
 #if CROSSINGS
   if (resume == 0) atomicAdd(crossing_total, uint(work.crossings));

@@ -11,15 +11,15 @@
 
 namespace airlight::gpu::shadow_planes {
 
-// What lights leave in a picture, in a frame's buffers.
+// Light of all lamps in a picture, in a frame's buffers.
 struct LitPicture {
   // Clears the counters. `crossings`: edges are crossed; `dispatches`: of lights and airs, those that go on included.
   LitPicture(Frame&, const scene::View&, bool hits, bool crossings, int dispatches);
   scene::View view;
   const Buffer *distances, *primitives;  // of the first hits; null: there are none
   const Buffer &pixels, &states;         // the layouts of pixels.glsl, state.glsl
-  Buffer& counters;                      // that of counters.glsl
-  int next_groups = 1;                   // of its resume_groups, the first that no dispatch writes yet
+  Buffer& counters;                      // the layout of counters.glsl
+  int next_groups = 1;                   // index of the first of resume_groups that no dispatch writes yet
   bool empty = true;                     // nothing is in the pixels yet
 };
 
@@ -30,7 +30,7 @@ class PlaneShading {
   PlaneShading(Context&, const std::shared_ptr<const scene::Scene>&, const airlight::shadow_planes::Options&,
                const AirlightTermsOnDevice&, const SurfacesOnDevice* surfaces);
 
-  // Of one light, the edges whose planes rays may cross: null where nothing casts a shadow.
+  // Edges of one light whose planes rays may cross: null where nothing casts a shadow.
   struct Edges {
     const LightEdges* edges = nullptr;
     const FanOnDevice* fan = nullptr;

@@ -45,12 +45,12 @@ class PreparedShadowPlanesGpu final : public scene::Prepared {
 
  private:
   struct OfSurfaces {                       // what depends on them
-    std::unique_ptr<FirstHits> first_hits;  // null: rays are infinite
+    std::unique_ptr<FirstHits> first_hits;  // everything that depends on surfaces
     std::unique_ptr<PlaneShading> shading;
     std::shared_ptr<const airlight::shadow_planes::Occluders> occluders;  // null: nothing casts a shadow
-    std::unique_ptr<Silhouettes> silhouettes;                             // likewise
-    std::unique_ptr<OriginCounts> counts;                                 // likewise
-    std::unique_ptr<FanOnDevice> fan;                                     // likewise
+    std::unique_ptr<Silhouettes> silhouettes;                             // null: nothing casts a shadow
+    std::unique_ptr<OriginCounts> counts;                                 // null: nothing casts a shadow
+    std::unique_ptr<FanOnDevice> fan;                                     // null: nothing casts a shadow
     std::unique_ptr<VertexValues> values;   // null: the airlight is computed for every pixel
     mutable std::vector<LightEdges> edges;  // by light
     mutable int rounds = 0;                 // PlaneShading::add; more when a frame that was looked at had too few
@@ -89,7 +89,7 @@ PreparedShadowPlanesGpu::PreparedShadowPlanesGpu(std::shared_ptr<const Scene> sc
   times_ = prepare();
 }
 
-// What depends on the surfaces; edges of meshes that have not moved are those of the frame before.
+// Prepares everything that depends on the surfaces. Meshes that have not moved keep the edges of the previous frame.
 std::vector<scene::StageTime> PreparedShadowPlanesGpu::prepare() {
   OfSurfaces now;
   const bool lit = std::any_of(scene_->lights.begin(), scene_->lights.end(), scene::shines);

@@ -11,7 +11,7 @@ class ShadowPlanes final : public scene::Renderer {
   std::string name() const override { return "shadow_planes_gpu"; }
   std::string about() const override;
   std::string device() const override { return Context::name_of_device(); }
-  std::vector<scene::SettingSpec> settings() const override;  // those of shadow_planes; fewer nodes
+  std::vector<scene::SettingSpec> settings() const override;  // settings of shadow_planes, with fewer nodes
   std::vector<std::string> supports(const scene::Scene&, const scene::Settings&) const override;
 
  private:

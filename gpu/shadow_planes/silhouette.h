@@ -8,10 +8,10 @@
 
 namespace airlight::gpu::shadow_planes {
 
-// Of one light; nobody on the host knows how many there are.
+// Silhouette edges of one light. Only the device knows their number.
 struct LightEdges {
   std::unique_ptr<Buffer> edges;  // the layout of edge.glsl, in no particular order
-  std::unique_ptr<Buffer> state;  // that of light_state.glsl
+  std::unique_ptr<Buffer> state;  // the layout of light_state.glsl
 
   void bind() const {
     edges->bind(at::edges);

@@ -1,4 +1,4 @@
-// What a ball hides from the light; methods/shadow_planes/surface_count.h. In double precision.
+// Occlusion of a light by a ball; methods/shadow_planes/surface_count.h. In double precision.
 
 // Does the open segment from the light to y, relative to it, meet the sphere around c?
 bool hides(dvec3 c, double radius, dvec3 y) {

@@ -12,13 +12,13 @@ layout(std430, binding = AT_STATES) buffer States { State states[]; };
 uniform int resume;           // 0: the first dispatch of a light
 uniform int most_gatherings;  // of a dispatch, > 0
 
-// Of pixel `place`: what is before the first crossing, or what was left.
+// Start state of pixel `place`: the state before the first crossing, or where the last dispatch stopped.
 State begin_state(int place, int m) {
   if (resume != 0) return states[place];
   return State(-1e300LF, 0, vec4(0), -1, m, 0, m);
 }
 
-// What a pixel took: lit parts, crossings, gatherings after the first.
+// Work of a pixel: lit parts, crossings, gatherings after the first.
 struct Work {
   int parts, crossings, gatherings;
 };

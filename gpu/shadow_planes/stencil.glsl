@@ -83,8 +83,8 @@ bool gamma_at_end(Line line, double end, double place, int primitive, out vec3 g
 #endif
 
 #if CROSSINGS
-// What the next plane does to the light in front of it: 1 adds, -1 takes away. `entry`: nothing that is sorted in front of it is
-// drawn, there the stencil becomes 255; false from there on.
+// Effect of the next plane on the light in front of it: 1 adds, -1 subtracts. `entry`: planes that are sorted in front of it are not
+// drawn, and the stencil becomes 255 there. Returns false from there on.
 bool meet_plane(Line line, double end, dvec2 part, double entry, int e, inout int stencil, out float share, out int name,
                 out double place, out double on_edge, out double times) {
   share = 0;

@@ -8,11 +8,11 @@ namespace airlight::gpu::shadow_planes {
 
 class OriginCounts {
  public:
-  // All must live on.
+  // The arguments must outlive this object.
   OriginCounts(Context&, const Silhouettes&, const FirstHits&);
 
-  // Of a perspective camera into the light's state; of a parallel view by pixel into `states` (state.glsl). Loops that
-  // the driver ends are told in `counters`.
+  // For a perspective camera writes m into the light's state; for a parallel view writes m of each pixel into `states`
+  // (state.glsl). `counters` report loops that the driver cuts.
   void find(const scene::View&, const Point3& light, const LightEdges&, const Buffer& states,
             const Buffer& counters) const;
 

@@ -13,9 +13,9 @@ namespace airlight::gpu::shadow_planes {
 
 class VertexValues {
  public:
-  // All must live on. `surfaces` is null where there are none. Of `most_edges` silhouette edges planes are meshed, or of
-  // as many as a storage block has room for: that there were more is told in the frame's counters. Throws Unavailable if
-  // there is no room for the vertices of surfaces.
+  // All arguments must outlive this object. `surfaces` is null if there are none. Planes are meshed for `most_edges`
+  // silhouette edges, or for as many as a storage block has room for; the frame's counters tell if there were more.
+  // Throws Unavailable if there is no room for the vertices of surfaces.
   VertexValues(Context&, const std::shared_ptr<const scene::Scene>&, const airlight::shadow_planes::Options&,
                const AirlightTermsOnDevice&, const SurfacesOnDevice* surfaces, int most_edges);
 

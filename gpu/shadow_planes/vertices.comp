@@ -65,7 +65,7 @@ void main() {
   if (length_ > 0) {
     Line line = Line(camera, way / length_);
     Ray ray = ray_on(line);
-    // As an image's rays do, it ends on the light's ball, or close to the light.
+    // The ray ends on the light's ball, or close to the light, like the rays of an image.
     double radius = max(ball_radius, 1e-6LF * length(ray.to_light));
     if (ray.h < radius) {
       double half_chord = sqrt((radius - ray.h) * (radius + ray.h));

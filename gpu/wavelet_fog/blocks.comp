@@ -1,5 +1,5 @@
-// What is known of blocks of cells (methods/wavelet_fog/blocks.h). STAGE 0: of each cell, the greatest |coefficient| that reaches
-// it, or |coefficient - prolonged|; 1: the greatest of the four blocks in one; 2: how large a block around each cell is empty.
+// Bounds for blocks of cells (methods/wavelet_fog/blocks.h). STAGE 0: for each cell, the greatest |coefficient| that reaches it, or
+// |coefficient - prolonged|; 1: the greatest of the four blocks in one; 2: how large a block around each cell is empty.
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #define VALUES_ACCESS
 #include "wavelet_fog/grids.glsl"

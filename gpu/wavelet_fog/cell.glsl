@@ -77,8 +77,8 @@ vec2 moments_in_cell(Cell c, vec2 at, vec2 along, vec2 s) {
 #if FALLS
 const float fall_node[FALL_POINTS] = float[](FALL_NODES), fall_weight[FALL_POINTS] = float[](FALL_WEIGHTS);
 
-// Of f exp(-(least + |fall| s)): heights over the base in scale heights, `height` at s = 0, `fall` per unit of s. Pieces of at most one
-// scale height from the lower end on, until the rest weighs below rounding.
+// Integral of f exp(-(height + fall s)) over s in a cell. `height`: height over the base at s = 0, in scale heights; `fall`: its change
+// per unit of s. Parts of at most one scale height are summed from the lower end until the rest is below rounding.
 float falling_in_cell(Cell c, vec2 at, vec2 along, vec2 s, float height, float fall) {
   const float deep = 24;
   float length_ = s.y - s.x, zeta = abs(fall) * length_, parts = max(1.0, ceil(zeta));

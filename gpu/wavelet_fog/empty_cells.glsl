@@ -1,4 +1,4 @@
-// What is known of empty cells of the medium in hand. Needs fog.glsl.
+// Empty cells of the current medium. Needs fog.glsl.
 #define EMPTINESS_ACCESS readonly
 #include "wavelet_fog/emptiness.glsl"
 

@@ -1,5 +1,6 @@
-// Grids of numbers over a map in one buffer of the device, and filters between them: Mallat's decomposition in single precision
-// (methods/wavelet_fog/decomposition.h). What is told once is done again whenever the first grid changes.
+// Grids of numbers over a map in one buffer of the device, and filters between them: Mallat's
+// decomposition in single precision (methods/wavelet_fog/decomposition.h). Passes are recorded once and
+// run again whenever the first grid changes.
 #pragma once
 #include <functional>
 #include <memory>
@@ -19,21 +20,21 @@ class Grids {
 
   // A grid of zeros with a rim of zeros on every side; its number. Grid 0 is the one that is written from here.
   int add(const scene::IndexRange&, int rim = 0);
-  // The same in room that is shared with others, from the last reuse on: contents undefined.
+  // Adds a grid in memory that is shared with other grids since the last reuse_scratch: contents undefined.
   int scratch(const scene::IndexRange&);
   void reuse_scratch() { scratch_used_ = 0; }
   const scene::IndexRange& range(int grid) const { return ranges_[grid]; }
   const GridData& data(int grid) const { return data_[grid]; }
 
-  // Passes over grids, in their order.
-  // Along u, then along v, of what coarse_range says.
+  // The passes run over grids in the order of these calls.
+  // Downsampling along u, then along v, over the range of coarse_range.
   void down(int from, const Taps& along_u, const Taps& along_v, int to);
-  // The same back: to = sum where `added` is none (-1), added + sign sum else; `to` may be `added`.
+  // Upsampling: to = sum if `added` is -1, else added + sign sum. `to` may equal `added`.
   void up(int from, const Taps& along_u, const Taps& along_v, int to, int added = -1, double sign = 1);
-  // Nothing below 0, the sum restored.
+  // Sets values below 0 to 0 and restores the sum.
   void clamp(int from, int to);
-  // Any other program over all of grid `to`: `set` gives it its uniforms. What it needs beyond values and grids is bound by run's
-  // caller.
+  // Records another program that runs over all of grid `to`: `set` gives it its uniforms. The caller of run binds what
+  // it needs beyond values and grids.
   void pass(Program&, std::function<void(Program&)> set, const scene::IndexRange& invocations);
 
   // After the last of these: the buffers. Throws Unavailable where the device's are smaller.

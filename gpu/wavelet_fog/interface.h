@@ -1,4 +1,4 @@
-// What host and shaders of this method must agree about, said once: numbers that shaders get as definitions.
+// Constants and layouts shared by host and shaders of this method: shaders get the numbers as definitions.
 #pragma once
 #include <map>
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace airlight::gpu::wavelet_fog {
 
-// Storage blocks, AT_... in shaders. gpu/raster has 10 to 12 and 14 (surfaces, the tree), environments 9. What no shader has at the
-// same time shares a number: no stage needs more than 8.
+// Storage blocks, AT_... in shaders. gpu/raster has 10 to 12 and 14 (surfaces, the tree), environments 9. Blocks that
+// no shader uses together share a number: no stage needs more than 8.
 namespace at {
 enum Binding {
   fog = 0,
@@ -58,7 +58,7 @@ struct LitData {
   float reflected[4], sum[4];
   double t, unused;
 };
-// Of a ray under a sun, without the edges of shadows that it keeps.
+// State of a ray under a sun, without the shadow edges that it stores.
 struct SunState {
   double end, from, known, cell, before, low, high, way;
   float light[3], depth[3];

@@ -10,7 +10,7 @@
 
 namespace airlight::gpu::wavelet_fog {
 
-// Of the block of fog.glsl: media, then the knots of all.
+// Bytes of the block of fog.glsl: media, then the knots of all.
 std::vector<char> bytes_of(const std::vector<FogData>&, const std::vector<double>& knots);
 // NAME_POINTS, _NODES and _WEIGHTS of a Gauss rule on [0, 1].
 void add_rule(Definitions&, const std::string& prefix, int points);
@@ -28,12 +28,14 @@ class FogOnDevice {
   bool stale() const { return stale_; }
   void refresh();
 
-  // Of variant polar, before add_depths. `counts`: cells are counted.
+  // Fills the table of variant polar; must precede add_depths. `counts`: cells are counted.
   void fill_table(const scene::View&, FrameBuffers&, const Buffer& counters, bool counts);
-  // Of a view's rays: added to `depths` (4 floats a pixel; begun if `first`), up to `distances` [m] unless that is null.
+  // Adds the depths of a view's rays to `depths` (4 floats a pixel; starts from 0 if `first`), up to
+  // `distances` [m] unless null.
   void add_depths(const scene::View&, const Buffer* distances, const Buffer& depths, const Buffer& counters, bool first,
                   bool counts);
-  // What surfaces reflect of a lamp, seen through this medium on its way to them; the program is told of the lamp before.
+  // Light of a lamp that surfaces reflect, dimmed by this medium on its way to them. The program must
+  // know the lamp before.
   Program& light_rays() { return *light_rays_; }
   void dim(const scene::View&, const Buffer& lit);
 

@@ -1,4 +1,4 @@
-// What a pixel shows behind the fog, as lights in turn add to it.
+// Radiance that a pixel shows behind the fog, as lights in turn add to it.
 struct Lit {
   vec4 reflected;  // of the light in hand, towards the camera; w: integral of a medium on the way to it, so far
   vec4 sum;        // of those before it, and what shines by itself

@@ -127,7 +127,7 @@ bool scatter(dvec2 t, bool lit, inout int halvings, inout int index) {
   return true;
 }
 
-// As far as shadows are known; false: to be gone on with.
+// Marches as far as shadows are known. Returns false if the ray must be continued.
 bool march(int place, inout SunState ray) {
   while (ray.from < ray.end) {
     if (has_ended()) return true;

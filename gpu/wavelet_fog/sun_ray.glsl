@@ -1,4 +1,4 @@
-// What a ray under a sun leaves from dispatch to dispatch: the rays of the strip in hand, row 0 first.
+// State of a ray under a sun from dispatch to dispatch: the rays of the current strip, row 0 first.
 struct SunState {
   double end;           // [m]
   double from;          // its light is summed up to here

@@ -22,7 +22,7 @@ constexpr int software_light = 3000, software_shadows = 3000, hardware = 1 << 30
 
 std::string at_index(const char* name, std::size_t i) { return fmt::format("{}[{}]", name, i); }
 
-// What maps and march read alike, of medium i.
+// Uniforms of medium i that maps and march both read.
 void set_rows(Program& p, std::size_t i, const airlight::wavelet_fog::SunRows& rows, int first) {
   p.set(at_index("sun_columns", i), rows.columns);
   p.set(at_index("sun_rows", i), rows.rows);
@@ -190,7 +190,7 @@ void SunOnDevice::fill_maps(const Vec3& to_sun, FrameBuffers& buffers, const Buf
   map.bind(at::table);
 }
 
-// What does not change from sun to sun.
+// Sets everything that does not change from sun to sun.
 void SunOnDevice::begin(const scene::View& view, const Buffer* distances, bool counts) {
   for (Program* p : {start_, shadows_, light_}) {
     if (!p) continue;

@@ -41,7 +41,7 @@ class SunOnDevice {
   std::vector<Program*> steps_;  // by medium
   Program *sums_ = nullptr, *start_ = nullptr, *light_ = nullptr;
   Program *shadows_ = nullptr, *pack_ = nullptr;  // null: not needed
-  // Of several media together.
+  // Buffers for several media together.
   std::unique_ptr<Buffer> media_, grids_, values_, emptiness_;
   std::vector<int> first_value_, first_word_;
   int rounds_ = 0, most_rounds_ = 0;   // that frames took; that this one took

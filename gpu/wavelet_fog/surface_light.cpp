@@ -86,7 +86,7 @@ void SurfaceLight::reflect(const scene::Light& light, const scene::View& view, c
   p.set("triangle_count", first_hits_->surfaces().triangles());
   p.set("first", first);
   p.set("loop_count", 3);
-  // As Geometry::offset_origin.
+  // Offset of Geometry::offset_origin.
   const double reach = std::max(magnitude_, view.camera.position.cwiseAbs().maxCoeff());
   p.set_double("nudge", 32 * std::numeric_limits<double>::epsilon() * reach);
   p.dispatch(view.width, view.height);

@@ -1,5 +1,5 @@
-// What rays end on, seen without the fog in front of it: surfaces in the light of lamps, which comes through the fog, and the
-// environment.
+// Radiance at the ends of rays, without the fog in front of them: surfaces in the light of lamps, which comes through
+// the fog, and the environment.
 #pragma once
 #include <functional>
 #include <memory>
@@ -27,8 +27,8 @@ class SurfaceLight {
 
   // False: no lamp lights a surface, and there is no environment: `lit` is not written.
   bool shines() const { return reflects_ || environments_.count() > 0; }
-  // Of the lights of `scene`, the one it was made for or one whose lamps moved. `primitives` may be null. `dim` takes from what `lit` has
-  // of a light what the media between it and the surfaces take.
+  // Renders with the lights of `scene`, which is the original scene or one whose lamps moved. `primitives` may be null.
+  // `dim` multiplies the light of a lamp in `lit` by the transmittance of the media between lamp and surfaces.
   void render(const scene::Scene&, const scene::View&, const Buffer* primitives, const Buffer& lit,
               const std::function<void(const scene::Light&)>& dim);
 

@@ -32,8 +32,8 @@ int coarse_level(ivec2 cell) {
 }
 #endif
 
-// Of the line from `t` on, `end` long, over cells of the grid, or over blocks of them: empty ones, those that a coarser grid knows well
-// enough. Ends once it is above `enough_`.
+// Integral over the line from `t` on, over a length of `end`, by cells of the grid or by blocks of them: empty blocks, and blocks where
+// a coarser grid is accurate enough. Ends once the sum is above `enough_`.
 float walk(Grid g, Line line, double t, float end, Factor factor, float enough_) {
   dvec2 exact = line.start + t * line.along, corner = floor(exact);
   ivec2 anchor = ivec2(corner), first = lo_of(g), last = first + size_of(g) + DEGREE - 1;

@@ -10,19 +10,20 @@
 
 namespace airlight::compensated_ray_marching {
 
-// Why multiple scattering at the centres is left out; empty where it is not. What is scattered again is no more than the albedo times what
-// is lost on a way along the axes of all Gaussians, one after another: below the tolerance it is not looked for.
+// Why multiple scattering at the centres is left out; empty if it is not. Its upper bound is the albedo
+// times the light lost on a path along the axes of all Gaussians, one after another. It is not computed
+// if the bound is below the tolerance.
 std::string single_only(const scene::GaussianSum&, const scene::Medium&, const Options&);
 
 class CentreSources {
  public:
-  // `sum` and `medium` are of the same smoke; they outlive this. Gaussians of no amplitude are passed over. Of the surfaces spheres cast
-  // shadows, and meshes as sets of spheres; planes none.
+  // `sum` and `medium` describe one smoke and must outlive this object. Gaussians of amplitude 0 are skipped. Spheres
+  // cast shadows, meshes cast shadows as sets of spheres, planes cast none.
   CentreSources(const scene::GaussianSum& sum, const scene::Medium& medium, const std::vector<scene::Surface>&,
                 const Options&);
 
-  // A light, or another. Conjugate gradients begin with the radiance before. `scatters`: the smoke does; else all sources are 0, and
-  // light on surfaces is what is found.
+  // Sets the lights. Conjugate gradients start from the previous radiance. `scatters`: whether the smoke scatters
+  // light; without it all sources are 0, and only light on surfaces is computed.
   void light(const std::vector<scene::Light>&, bool scatters, const scene::Execution&);
   // Where the first light begins: with the solution of the last frame's smoke, which `solution` gives.
   void begin_with(const Solution&);

@@ -10,7 +10,7 @@
 
 namespace airlight::compensated_ray_marching {
 
-// What is marched through.
+// The smoke that is marched through.
 struct MarchedSmoke {
   scene::GaussianSum gaussians;
   std::vector<std::vector<Rgb>> source;              // at each centre, order^2 coefficients of propagation directions
@@ -18,8 +18,9 @@ struct MarchedSmoke {
   Rgb extinction;                                    // sigma_t [1/m]
 };
 
-// What a slice's source is multiplied by. printed: its depth across (section 5.5, before Eq. 16); paper: its depth along the ray, that over
-// the cosine (section 5.6); exact: 1 - exp(-depth), since the slice absorbs of its own light, too.
+// Factor on a slice's source. printed: its depth across (section 5.5, before Eq. 16); paper: its depth
+// along the ray, which is the depth across over the cosine (section 5.6); exact: 1 - exp(-depth), since
+// the slice absorbs its own light, too.
 enum class SliceWeight { printed, paper, exact };
 // For a slice's depth along the ray; cosine: of the angle between the ray and the axis across the slices.
 Rgb seen(const Rgb& depth, double cosine, SliceWeight);

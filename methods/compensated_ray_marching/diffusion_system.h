@@ -18,7 +18,7 @@ struct LinearSource {
   double mean = 0;
   Vec3 direction = Vec3::Zero();
 };
-// Of the bands 0 and 1 of source radiance in propagation directions.
+// Mean and direction of source radiance, from its bands 0 and 1 in propagation directions.
 LinearSource linear_source(const double* harmonics);
 
 struct DiffusionSystem {

@@ -81,7 +81,7 @@ OrdinateSolution DiscreteOrdinates::solve(const Moments& source, double inflow, 
       (before && (before->rows() != source.rows() || before->cols() != source.cols())))
     throw Error("discrete ordinates: a source that does not fit the grid and the order, or is not finite");
   const int lights = int(source.cols()) / bands;
-  // Of the light's mean alone, weighted with what scatters it.
+  // Inner product of the mean radiances (band 0), weighted with the squared extinction.
   const auto product = [&](const Moments& a, const Moments& b) {
     double sum = 0;
     for (int l = 0; l < lights; ++l) sum += (extinction_.square() * a.col(l * bands) * b.col(l * bands)).sum();

@@ -3,8 +3,9 @@
 //
 //   w.grad L = extinction (J - L),   J = J_ss + J_ms,   J_ms,lm = albedo p_l M_lm,   M_lm = integral of L y_lm over the sphere
 //
-// Propagation directions throughout. Each direction is swept plane by plane along the axis that it crosses fastest; between two planes the
-// source is a parabola in the optical depth. What enters by the faces is 0 (the reduced light is in J_ss), or the same everywhere.
+// All directions are propagation directions. Each direction is swept plane by plane along the axis that it crosses
+// fastest; between two planes the source is a parabola in the optical depth. The inflow through the faces is 0 (the
+// reduced light is in J_ss), or constant.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -82,9 +83,10 @@ class DiscreteOrdinates {
 // The axis whose planes a direction crosses fastest.
 int fastest_axis(const OrdinateGrid&, const Vec3& direction);
 
-// Of every direction, by node: 0 where an object stands between the node and the plane before it, else 1. `objects`: whether one stands
-// between a node and a place `back` from it [m]; asked from several threads. Objects take the light that meets them: what they reflect is
-// left out. Rays that run along a wall are interpolated across it: 0.06 of the light leaks behind it.
+// Visibility for every direction, by node: 0 where an object stands between the node and the previous plane, else 1.
+// `objects`: whether an object stands between a node and the point at offset `back` [m]; called from several threads.
+// Objects absorb the light that meets them; reflected light is left out. Rays along a wall are interpolated across the
+// wall: 0.06 of the light leaks behind it.
 std::vector<std::vector<float>> open_ways(const OrdinateGrid&, const std::vector<Ordinate>&,
                                           const std::function<bool(Eigen::Index node, const Vec3& back)>& objects);
 

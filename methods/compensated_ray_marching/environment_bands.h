@@ -1,4 +1,5 @@
-// Environments in bands of spherical harmonics. What costs, a map's projection, is kept where the map is the same, however it is turned.
+// Environments in bands of spherical harmonics. A map's projection is expensive: it is cached for each
+// map, for any rotation.
 #pragma once
 #include <functional>
 #include <memory>
@@ -10,7 +11,7 @@ namespace airlight::compensated_ray_marching {
 
 class EnvironmentBands {
  public:
-  // Of a map as it lies: order^2 coefficients of the map's own directions.
+  // Projection of an unrotated map: order^2 coefficients in the map's own directions.
   using Project = std::function<std::vector<Rgb>(const std::shared_ptr<const scene::EnvironmentMap>&)>;
   explicit EnvironmentBands(int order);  // by project_environment
   EnvironmentBands(int order, Project);

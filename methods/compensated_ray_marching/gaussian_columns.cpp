@@ -75,7 +75,7 @@ void AddColumns(const Nearby& near, float cutoff, const Starts& starts, float* c
         before = Max(Neg(half), Min(ahead, half));
       }
       const VF share = hn::Exp(f, Neg(aside)) * (beyond + error_function(before));
-      // Of each ray alone, so that the bits do not depend on how many are looked at together.
+      // Decided for each ray alone, so that the bits do not depend on how many rays are processed together.
       sum = IfThenElse(met, MulAdd(hn::Set(f, 0.5f * near.full[g]), share, sum), sum);
     }
     hn::BlendedStore(sum, hn::FirstN(f, std::min(lanes, end - i)), f, columns + i);

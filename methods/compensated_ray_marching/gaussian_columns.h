@@ -1,4 +1,4 @@
-// What a sum of Gaussians has along many parallel rays.
+// Columns of a sum of Gaussians along many parallel rays.
 #pragma once
 #include <vector>
 

@@ -1,5 +1,6 @@
-// Gaussians along the view rays of one row of pixels, which lie in a plane: only those that meet it are looked at, and only where the ray is
-// within them. What Zhou et al. 2008, section 5.5, draw slice by slice, added ray by ray.
+// Gaussians along the view rays of one row of pixels, which lie in a plane. Only Gaussians that meet the plane are
+// evaluated, and only where the ray is within them. Zhou et al. 2008, section 5.5, draw the Gaussians slice by slice;
+// here they are added ray by ray.
 #pragma once
 #include <vector>
 

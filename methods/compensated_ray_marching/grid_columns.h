@@ -1,4 +1,4 @@
-// What a grid's density has along many parallel rays.
+// Columns of a grid's density along many parallel rays.
 #pragma once
 #include <vector>
 

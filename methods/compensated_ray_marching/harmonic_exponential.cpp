@@ -37,7 +37,8 @@ struct Sphere {
   }
 };
 
-// Of what has no mean left: squared `times` times, kept near 1 in size so that nothing overflows; what was taken out comes back at the end.
+// Squares f `times` times. f is an exponential whose mean exponent was removed; `log_scale` is that mean exponent.
+// f is kept near 1 in size to avoid overflow; the scale is applied at the end.
 Harmonics squared(Harmonics f, int times, double log_scale) {
   const scene::TripleProduct& product = scene::triple_product(order_of(f));
   for (int i = 0; i < times; ++i) {

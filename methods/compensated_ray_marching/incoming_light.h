@@ -19,13 +19,14 @@ class IncomingLight {
   void become(const std::vector<scene::Light>&);
 
   const std::vector<Vec3>& directions() const { return directions_; }  // towards the light, unit
-  std::size_t fixed() const { return fixed_.size(); }                  // those of environments, which come first
+  std::size_t fixed() const { return fixed_.size(); }                  // directions of environments, which come first
   const std::vector<Ordinate>& fixed_directions() const { return fixed_; }
   const std::vector<Rgb>& power() const { return power_; }  // radiance times solid angle, or irradiance [W/m^2]
-  // What the source radiance of smoke cannot pass, per albedo: the brightest of the sky; no limit where a sun shines [W/m^2/sr].
+  // Upper bound of the source radiance of smoke, per albedo: the brightest radiance of the sky; infinite
+  // with a sun [W/m^2/sr].
   Rgb brightest() const;
   bool dark() const;
-  bool grey() const;  // the same in all channels
+  bool grey() const;  // equal in all channels
 
  private:
   EnvironmentBands bands_;

@@ -22,8 +22,8 @@ namespace {
 constexpr int most_cells = 96;           // along a side, for cells that are not too deep
 constexpr double least_share = 1e-6;     // of the greatest mean density: below it a cell counts as empty
 constexpr double least_radiance = 1e-6;  // of the greatest
-// Of deepest_cell: light from one direction has creases where it comes in by one face or another, which cells of a box 1.3 deep miss by
-// 20 %, of 0.8 by 6 %, of 0.5 by 2 %.
+// Factor on deepest_cell for light from a single direction. Such light has creases where it enters by different faces.
+// In a box 1.3 deep, cells miss the creases by 20 %, in one 0.8 deep by 6 %, in one 0.5 deep by 2 %.
 constexpr double share_of_sharp_light = 1. / 3;
 constexpr double least_again = 1e-6;  // of an even light: ordinates that scatter less keep what they have
 constexpr std::size_t run = 64;       // nodes a task
@@ -50,7 +50,8 @@ OrdinateOptions ordinate_options(const Options& options) {
   return ordinates;
 }
 
-// What a direction's light of radiance 1 adds to each coefficient, but for albedo and its power; a row for each direction.
+// Contribution of light of radiance 1 from a direction to each coefficient, without albedo and power; a
+// row for each direction.
 Eigen::MatrixXd scattered_by_direction(const std::vector<Vec3>& toward, int order, const std::vector<double>& moments) {
   const Eigen::Index bands = order * order;
   Eigen::MatrixXd scatters(Eigen::Index(toward.size()), bands);
@@ -141,8 +142,8 @@ void LitGrid::find_channels(const OrdinateOptions& ordinates) {
   }
 }
 
-// What the smoke leaves of an even light at the nodes; the deepest column [m]. From the directions that an environment's light is scattered
-// once from, where there is one, else from the ordinates'. Surfaces are left out.
+// Transmitted share of an even light at the nodes; returns the deepest column [m]. Uses the directions of single
+// scattering from an environment, if there is one, else those of the ordinates. Surfaces are left out.
 double LitGrid::look_around(const IncomingLight& light, const OrdinateOptions& options,
                             const scene::Execution& execution) {
   const bool known = fixed_ > 0 && !scene_.geometry;
@@ -312,7 +313,7 @@ void LitGrid::scatter_again(const IncomingLight& light, const scene::Execution& 
   std::atomic<bool> stopped{false};
   double single_seconds = 0, multiple_seconds = 0;
   for (Channels& group : channels_) {
-    // Of light without colour one channel stands for all.
+    // For light without colour one channel stands for all.
     const std::size_t lights = light.grey() ? 1 : group.which.size();
     const Moments source = scatter_once(group, lights, scatters, execution);
     single_seconds += watch.lap();

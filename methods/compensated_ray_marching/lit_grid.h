@@ -16,22 +16,25 @@ namespace airlight::compensated_ray_marching {
 
 class LitGrid {
  public:
-  // What does not depend on the light: nodes, their mean densities, and depths towards the light's fixed directions. A direction that
-  // surfaces block has no light. The scene outlives this. Throws NotSupported where cells are too deep however small.
+  // Computes everything that does not depend on the light: nodes, their mean densities, and depths towards the light's
+  // fixed directions. A direction that surfaces block has no light. The scene must outlive this object. Throws
+  // NotSupported if cells are too deep at any size.
   LitGrid(const scene::Scene&, const scene::Medium&, const Options&, const IncomingLight&, const scene::Execution&);
 
-  // Where light comes from, now: depths towards directional lights that were not there before. Whether there were such.
+  // Sets where light comes from. Computes depths towards new directional lights; returns whether there were any.
   bool aim(const IncomingLight&, const scene::Execution&);
-  // The same; single and multiple scattering at the nodes. Iterations begin with the light before.
+  // Sets the light and computes single and multiple scattering at the nodes. Iterations start from the
+  // previous solution.
   void light(const IncomingLight&, const scene::Execution&);
   // Where the first light begins: with the solution of the last frame's smoke, which `solution` gives; diffusion begins with nothing. Light
   // without colour has one for all channels that have extinction and albedo in common.
   void begin_with(const Solution&, bool grey);
   Solution solution() const;
 
-  // Logarithm of the source radiance [W/m^2/sr] towards the camera at every node: of single scattering with as many bands of the phase
-  // function as light has, of the rest with `order`. What is below 1e-6 of the greatest counts as that. Light dies away exponentially in
-  // smoke, so that logarithms are what is interpolated: errors between nodes are 1.2 times (cells 0.4 deep) to 1.6 times smaller (1.6).
+  // Logarithm of the source radiance [W/m^2/sr] towards the camera at every node. Single scattering uses as many bands
+  // of the phase function as the light has, the rest uses `order`. Radiances below 1e-6 of the greatest are raised to
+  // that value. Light decays exponentially in smoke, therefore logarithms are interpolated: errors between nodes are
+  // 1.2 times (cells 0.4 deep) to 1.6 times smaller (1.6).
   std::vector<Rgb> towards(const scene::Camera&, const scene::Execution&) const;
 
   const NodeGrid& grid() const { return grid_; }
@@ -40,10 +43,10 @@ class LitGrid {
   const std::vector<Eigen::Index>& nodes() const { return nodes_; }
   const Eigen::ArrayXd& densities() const { return densities_; }
   const std::vector<std::vector<float>>& columns() const { return columns_; }
-  // Of the ordinates, past surfaces (open_ways); empty without surfaces or multiple scattering.
+  // Visibility of the ordinates past surfaces (open_ways); empty without surfaces or without multiple scattering.
   const std::vector<std::vector<float>>& open() const { return open_; }
   const BeyondEdges& beyond() const { return beyond_; }
-  // Of each channel, by cell: factors of what the ordinates sweep; empty: 1. Of smoke with hard edges.
+  // Factors on the swept radiance, for each channel and cell; empty: 1. Only smoke with hard edges has them.
   const std::array<Eigen::ArrayXd, 3>& balance() const { return balance_; }
   double deepest_cell() const { return deepest_; }
   const std::vector<scene::StageTime>& times() const { return times_; }  // of the last call that did something

@@ -16,21 +16,24 @@ class SmokeField {
   SmokeField(const scene::Medium&, const Options&);
 
   const scene::Medium& medium() const { return own_ ? *own_ : *given_; }
-  // That rays are marched through; null where there are none, a region cuts them off, or voxels stand for them.
+  // The Gaussians that rays are marched through. Null if there are none, if a region cuts them off, or
+  // if voxels replace them.
   const scene::GaussianSum* gaussians() const { return gaussians_; }
-  // Of paper: the Gaussians at whose centres light is found, those of an amplitude within the region.
+  // Gaussians at whose centres the light is computed: amplitude above 0, centre within the region
+  // (variant `paper` only).
   const scene::GaussianSum& centres() const { return centres_; }
-  // Of paper through voxels: Gaussians with their centres beyond the region, which add to the density within it.
+  // Gaussians centred outside the region, which add to the density within it (variant `paper` through voxels only).
   const std::vector<scene::Gaussian>& beyond() const { return beyond_; }
-  // Of paper, the voxels of fitted smoke; null: it is none.
+  // The voxels of fitted smoke (variant `paper` only); null for other smoke.
   const scene::VoxelGrid* voxels() const { return voxels_; }
-  // Of the Gaussians, where they have a source: 1e-10 of the greatest amplitude, no less than a float holds with all its digits.
+  // Least density of the Gaussians with a source: 1e-10 of the greatest amplitude, and no less than the
+  // smallest normal float.
   double least_density() const { return least_density_; }
   bool with_residual() const { return residual_.has_value(); }
-  // Of paper, where it is added to the Gaussians; null: it is not.
+  // The residual that is added to the Gaussians (variant `paper` only); null if none is added.
   const StoredResidual* residual() const { return residual_ ? &*residual_ : nullptr; }
 
-  // Where it is along a ray.
+  // The part of a ray that is in the smoke.
   Interval extent(const Ray&, Interval) const;
   // From the Gaussians' density, where they are marched through (row), or from the field itself.
   double density(const Point3&, double of_gaussians) const;

@@ -26,7 +26,8 @@ Eigen::ArrayXd mean_densities(const scene::Medium&, const NodeGrid&, int threads
 // In blocks of 4^3: neighbours in the list are neighbours in space, which have much work in common.
 std::vector<Eigen::Index> nodes_with_smoke(const NodeGrid&, const Eigen::ArrayXd& densities, double least);
 
-// Whether density jumps: at a region, at the faces of a field that has a border. Of fields that fade to 0 none.
+// Whether density jumps: at a region, or at the faces of a field with a border. Fields that fade to 0
+// have no hard edges.
 bool has_hard_edges(const scene::Medium&);
 
 // Nodes beyond a hard edge of the medium, a region's or a border's, beside nodes within it. Within, logarithms of light that dies away are

@@ -78,7 +78,7 @@ void source_integrals(const Row& t, const Row& passed, Row& i0, Row& i1, Row& i2
   i2 = (t < thin).select(t * (1. / 3 - t * (0.25 - t * (0.1 - t / 36))), (2 - (2 + t * (2 + t)) * passed) / t.square());
 }
 
-// What stands for the rows beyond the first and the last.
+// Boundary values for the rows beyond the first and the last.
 enum class Beyond { outside, last_row };
 
 // A direction, as the planes of its axis see it.
@@ -99,7 +99,7 @@ Way way_of(const Ordinate& d, const OrdinateGrid& grid, const Planes& planes, in
   return {y, weighted, step, Meeting(down), Meeting(across), Meeting(-down), Meeting(-across)};
 }
 
-// What is found along one row.
+// Working memory for one row.
 struct RowWork {
   Row depth, beyond;       // optical depths to the planes before and after
   Row passed, i0, i1, i2;  // what passes the depth, and source_integrals of it
@@ -159,7 +159,8 @@ class DiscreteOrdinates::GroupSweep {
   const double inflow_;
   const int bands_, lights_;
   std::vector<Way> ways_;
-  // Of plane k and its neighbours, at k % 3, and light at k % 2. Beyond the box nothing absorbs, light comes in, and the source goes on.
+  // Plane k and its neighbours are kept at k % 3, light at k % 2. Boundary condition: outside the box extinction is 0,
+  // the inflow radiance is given, and the source is extended by its last value.
   std::array<Padded, 3> extinction_;
   std::array<std::vector<Padded>, 3> emitted_;
   std::array<std::vector<Padded>, 2> light_;
@@ -196,7 +197,7 @@ void DiscreteOrdinates::GroupSweep::add_to(Moments& radiance) {
   }
 }
 
-// What the nodes of plane k extinguish, and send along each way.
+// Sets extinction of plane k, and the light that its nodes emit along each direction.
 void DiscreteOrdinates::GroupSweep::emit(int k) {
   const int across = planes_.across;
   tbb::parallel_for(0, planes_.rows, [&](int r) {

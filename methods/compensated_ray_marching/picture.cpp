@@ -54,7 +54,7 @@ class PreparedPicture final : public scene::Prepared {
  private:
   bool paper() const { return options_.variant == Options::Variant::paper; }
   std::vector<scene::StageTime> light(const Execution&);
-  // Of several orders, in what is drawn.
+  // Whether the picture contains multiple scattering.
   bool multiple() const { return scatters_ && (grid_ ? grid_->single_only() : centres_->single_only()).empty(); }
   bool ends() const { return scene_->geometry || !scene_->backdrops.empty(); }
   bool behind_kept() const { return scene_->geometry || scene::has_environment(*scene_) || !scene_->backdrops.empty(); }
@@ -202,7 +202,8 @@ std::vector<scene::Stage> PreparedPicture::stages() const {
        ambient_kept() ? "ambient_in_scatter times 1 - transmittance" : "ambient_in_scatter is zero, or no medium"}};
 }
 
-// What the ray ends on sends back, without the smoke in between. Light that the smoke scatters onto surfaces is left out.
+// Radiance from the end of the ray, without the smoke in between. Light that the smoke scatters onto
+// surfaces is left out.
 Rgb PreparedPicture::behind(const Ray& ray, const scene::RayEnd& end) const {
   if (!end.hit) return scene::background(*scene_, end, ray.direction);
   const scene::Hit& hit = *end.hit;
@@ -260,7 +261,7 @@ scene::Pixel PreparedPicture::pixel(const Ray& ray, const View& view, const Gaus
         source = voxel.source;
       else if (of_gaussians >= smoke_->least_density())
         source = (weighted[std::size_t(k)] / of_gaussians).max(0);
-      // What a slice shows of its source is what it takes away, by exact weights.
+      // With exact weights a slice shows as much of its source as it absorbs.
       p.airlight += p.transmittance * source * (exact ? lost : seen(depth, slope, options_.weight));
       p.transmittance *= 1 - lost;
     }

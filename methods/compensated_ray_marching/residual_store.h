@@ -1,4 +1,5 @@
-// What Gaussians leave of fitted smoke, as it is looked up between samples while rays are marched: Zhou et al. 2008, sections 5.2 and 5.6.
+// The residual of fitted smoke after subtracting its Gaussians, for lookups between samples while rays are marched:
+// Zhou et al. 2008, sections 5.2 and 5.6.
 #pragma once
 #include <variant>
 
@@ -11,14 +12,14 @@ namespace airlight::compensated_ray_marching {
 // domain bits, as published; eight look-ups between samples. automatic: grid on a processor, bricks on a device.
 enum class ResidualStore { automatic, grid, bricks, hash };
 
-// Of either sign, trilinear between samples; 0 beyond the border, within half a voxel of which it is clamped where the grid's is. All stores
-// have the same, a grid to the rounding of floats.
+// Residual of either sign, trilinear between samples. It is 0 beyond the border; within half a voxel of the border it
+// is clamped if the grid's values are. All stores give equal values; a grid rounds them to floats.
 class StoredResidual {
  public:
   StoredResidual(const scene::Residual&, ResidualStore);
 
   double at(const Point3&) const;                  // density
-  double at_sample(const Eigen::Vector3i&) const;  // the same, at a sample of the layout
+  double at_sample(const Eigen::Vector3i&) const;  // the residual density at a sample of the layout
   // Density of a level, and where the samples lie: without values. Levels of bricks and hash have one sample more on every side: size().
   double step() const { return step_; }
   const scene::VoxelGrid& layout() const { return layout_; }

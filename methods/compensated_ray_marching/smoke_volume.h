@@ -18,7 +18,8 @@ class SmokeVolume {
     Rgb source = Rgb::Zero();  // radiance
   };
 
-  // Of smoke with voxels, which outlives this. Density max(0, D~ + R); none where the Gaussians have less than least_density().
+  // `smoke` has voxels and must outlive this object. Density is max(0, D~ + R), and 0 where the
+  // Gaussians are below least_density().
   SmokeVolume(const SmokeField&, const scene::Execution&);
 
   // towards: source radiance of each centre. At a voxel that is the mean of the centres', weighted with their Gaussians, and at least 0.

@@ -102,7 +102,7 @@ std::vector<Rgb> SourceRadiance::by_directions(const Point3& x) const {
   return sum;
 }
 
-// Of the light from a direction, times its weight.
+// Light that arrives from direction k past smoke and objects, times the weight of the direction.
 Rgb SourceRadiance::left_of(std::size_t k, const Point3& x, const std::vector<scene::Sphere>& objects) const {
   const Vec3& toward = directions_[k].direction;
   const double spacing = std::sqrt(4 * pi / double(directions_.size()));

@@ -12,7 +12,7 @@
 
 namespace airlight::compensated_ray_marching {
 
-// What an environment sends: in harmonics of lookup directions, or as radiance from a direction (towards the light).
+// Light of an environment: in harmonics of lookup directions, or as radiance from a direction (towards the light).
 struct SourceLight {
   std::vector<Rgb> harmonics;
   std::function<Rgb(const Vec3&)> radiance;
@@ -24,13 +24,13 @@ struct SourceLight {
 //   directional: exact depths in fixed directions, whose transmittances times the light are projected once; nothing rings
 enum class Transmittance { paper_linear, paper_squared, series, directional };
 
-// Those of an order, made when first asked for and kept. Thread safe.
+// The tables for this order. Computed on first use and cached; thread-safe.
 const LinearExponential& linear_exponential(int order);
-// Of every kind but `directional`.
+// The table for any kind of transmittance except `directional`.
 const ShadowTable& shadow_table(int order, Transmittance);
 
 constexpr double squaring_threshold = 0.5;  // of paper_squared
-// Of `directional`.
+// Directions for the transmittance `directional`.
 inline std::vector<Ordinate> transmittance_directions() { return ordinate_directions(8, 16, false); }
 
 class SourceRadiance {

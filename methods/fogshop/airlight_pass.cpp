@@ -21,7 +21,7 @@ struct Bundle {
 // Corners are film positions.
 Bundle bundle_of(const scene::View& view, int x0, int y0, int x1, int y1) {
   Bundle b{camera_ray(view.camera, 0.5 * (x0 + x1), 0.5 * (y0 + y1), view.width, view.height)};
-  // Of all rays through the tile those through its corners are farthest from the middle one.
+  // The corner rays of the tile are farthest from its middle ray.
   for (int corner = 0; corner < 4; ++corner) {
     const Ray ray = camera_ray(view.camera, corner & 1 ? x1 : x0, corner & 2 ? y1 : y0, view.width, view.height);
     b.width = std::max(b.width, (ray.origin - b.axis.origin).norm());

@@ -11,7 +11,7 @@ struct AirlightImage {
   std::vector<double> depth;  // T(v, p) [-], at extinction ratio 1
   double evaluations = 0;     // of the error function
   double crossed = 0;         // pairs of pixel and Gaussian
-  double candidates = 0;      // the same for the lists of the tiles
+  double candidates = 0;      // pairs of pixel and Gaussian in the lists of the tiles
 };
 
 // `distance` is d_vp of every pixel [m], infinite where nothing is hit. Tiles of 8 x 8 pixels first list the Gaussians

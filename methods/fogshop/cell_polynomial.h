@@ -12,17 +12,18 @@ struct CellPolynomial {
   static constexpr int size = (degree + 1) * (degree + 2) * (degree + 3) / 6;  // coefficients
   static constexpr int points = (degree + 1) * (degree + 1) * (degree + 1);    // what it is made from
 
-  // Of x^a y^b z^c, a + b + c <= degree; c runs fastest, then b.
+  // Coefficients of x^a y^b z^c, a + b + c <= degree; c runs fastest, then b.
   std::array<double, size> coefficients{};
 
-  // At a place of the cube [-1, 1]^3, or a little beyond.
+  // Value at a point of the cube [-1, 1]^3, or slightly outside.
   double operator()(const Vec3& place) const;
 };
 
 // Places in [-1, 1]^3: zeros of Chebyshev's polynomials along every axis.
 const std::vector<Vec3>& cell_points();
 
-// Of the values at cell_points(): their Chebyshev series up to the total degree. Polynomials of that degree it gives back.
+// Chebyshev series, up to the total degree, of values at cell_points(). Polynomials of at most this
+// degree are reproduced.
 CellPolynomial fit_cell(const std::vector<double>& values);
 
 }  // namespace airlight::fogshop

@@ -59,7 +59,7 @@ void resolve(const GaussianArrays& g, Node& node, const std::vector<Loss>& losse
   for (int i = 0; i < CellPolynomial::size; ++i) node.resolved.coefficients[i] += sum.coefficients[i];
 }
 
-// The same polynomial in the coordinates of one of eight parts.
+// The polynomial in the coordinates of one of the cube's eight parts.
 CellPolynomial part_of(const CellPolynomial& whole, const Vec3& middle) {
   std::vector<double> values;
   for (const Vec3& place : cell_points()) values.push_back(whole(middle + 0.5 * place));

@@ -55,11 +55,11 @@ class DepthTree {
   std::vector<int> children_;
   std::vector<DepthCell> cells_;
   std::vector<int> listed_;
-  GaussianArrays listed_gaussians_;  // the same
+  GaussianArrays listed_gaussians_;  // the Gaussians of listed_
 };
 
-// What the polynomial of a cell of this side [m] loses of a Gaussian of width 1/a whose centre is `distance` [m] from the
-// cell, over the average depth at its centre [-]: not above 1. Measured and rounded up; a test holds it.
+// Error of the polynomial of a cell of this side [m] for a Gaussian of width 1/a at `distance` [m] from the cell,
+// relative to the average depth at its centre [-]: at most 1. Measured and rounded up; a test checks it.
 double cell_error(double side, double distance, double a);
 
 }  // namespace airlight::fogshop

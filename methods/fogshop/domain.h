@@ -19,7 +19,7 @@ constexpr double least_widths = 2.45, deepest = 1.2, deepest_sky = 0.5;
 // Why the scene lies clearly outside what the variant can do; empty if it does not. Source: above.
 std::string objection_to_domain(const scene::Scene&, const Fog&, const Options&);
 
-// What may be off by more than a quarter in pictures of the scene, in one line; empty if nothing.
+// Warning, in one line, about parts of pictures that may be wrong by more than a quarter; empty if there are none.
 std::string doubt_of(const scene::Scene&, const Fog&, const Options&);
 
 }  // namespace airlight::fogshop

@@ -1,9 +1,9 @@
 // Light from an environment, in harmonics: Zhou et al. 2007, section 4.2, Eqs. 26 to 28.
 //
-// What a medium scatters is the environment convolved with a point spread function, one product per coefficient
-// (Eq. 21), times T e^-T of one optical depth T. The paper reads T along the view ray for airlight (Eq. 28), and
-// averaged over all directions for light that reaches a surface (Eq. 26): it takes the medium around a point as a ball
-// of that depth.
+// The light that a medium scatters is the environment convolved with a point spread function, one product per
+// coefficient (Eq. 21), times T e^-T of one optical depth T. The paper takes T along the view ray for airlight (Eq.
+// 28). For light that reaches a surface it averages T over all directions (Eq. 26): it treats the medium around a point
+// as a ball of that depth.
 #pragma once
 #include "methods/fogshop/depth_tree.h"
 #include "methods/fogshop/environment_psf.h"
@@ -50,8 +50,7 @@ class EnvironmentLighting {
 // are summed: the average falls as 1/distance^2 only.
 double average_depth(const Model&, const Point3&, const DepthTree* = nullptr);
 
-// What ends the view rays that no surface ends, if the environment is not infinitely far away: replaces infinite
-// distances.
+// Distances to a finite environment for view rays that no surface ends: these replace infinite distances.
 std::vector<double> up_to_environment(const Options&, std::vector<double> distance);
 
 // Last loop of section 5.3, and Eq. 29 with L_p = L_in: adds Eq. 28 to `airlight` and the background, seen through the

@@ -14,7 +14,7 @@ struct Fog {
   scene::GaussianSum sum;  // amplitudes and constant are extinctions [1/m] where `extinction_ratio` is 1; no cutoff
   Rgb extinction_ratio = Rgb::Ones();  // [-], the greatest is 1
   Rgb albedo = Rgb::Ones();            // of everything, or the greatest of all where they differ
-  // What each Gaussian scatters of what `albedo` would, in [0, 1]; empty where all albedos are equal. It scales the
+  // Scattering of each Gaussian relative to `albedo`, in [0, 1]; empty if all albedos are equal. It scales the
   // scattering and not the extinction: the "color" of the paper's sections 6 and 7.
   std::vector<Rgb> colours;
   Rgb constant_colour = Rgb::Ones();

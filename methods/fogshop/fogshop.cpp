@@ -122,7 +122,7 @@ void write_layers(const AirlightImage& image, const Fog& fog, std::vector<float>
   }
 }
 
-// Of every pixel, or by those of a low resolution.
+// Airlight of every pixel, directly or interpolated from the pixels of a low resolution.
 AirlightImage PreparedFogshop::find_airlight(const View& view, const ViewModel& view_model,
                                              const std::vector<double>& distance, const Execution& execution,
                                              scene::Rendering& result) const {

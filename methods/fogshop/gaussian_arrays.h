@@ -14,8 +14,8 @@ enum class Cull {
   // R_i = sqrt(ln(c_i sqrt(pi) / (a_i threshold))) / a_i: no line integral loses more than `threshold` [-] of optical
   // depth; the same at every scale of the scene.
   depth,
-  // Zhou et al. 2007, Eq. 30: R_i = sqrt(ln c_i + 9) / a_i, where the density falls to e^-9 per metre. That is a
-  // density, not a depth: the loss grows with the scale of the scene.
+  // Zhou et al. 2007, Eq. 30: R_i = sqrt(ln c_i + 9) / a_i, where the density falls to e^-9 per metre. The threshold is
+  // a density, not a depth: the loss grows with the scale of the scene.
   paper,
 };
 

@@ -18,7 +18,7 @@ std::vector<Rgb> reflectance_harmonics(const scene::Material&, const Vec3& norma
 // Radiance towards the viewer [W/m^2/sr]: the inner product of `reflectance` (B_pv, or its product with a visibility,
 // TripleProduct) and `incident` radiance. Not clamped: cut-off harmonics may swing below 0.
 Rgb reflect_harmonics(const std::vector<Rgb>& reflectance, const std::vector<Rgb>& incident);
-// The same for incident light 1 in these bands around `to_light`: Eq. 25.
+// Reflected radiance for incident light of 1 with these zonal bands around `to_light`: Eq. 25.
 Rgb reflect_zonal(const std::vector<Rgb>& reflectance, const std::vector<double>& bands, const Vec3& to_light);
 
 // A function that is circularly symmetric about z, given by its coefficients of m = 0, turned to another axis: Eq. 23.

@@ -19,12 +19,12 @@ struct LightFromRay {
 // passes through the light.
 double homogeneous_airlight(const LightFromRay&, double d_vp, double beta);
 
-// The same, L_a^h(gamma, d_sv, d_vp, beta) in the paper's variables: gamma is the angle between the ray and the
-// direction to the light [rad, 0 to pi], d_sv the light's distance [m]. (The paper's "cos gamma = r . r_sv" has the
+// L_a^h(gamma, d_sv, d_vp, beta): the same airlight in the paper's variables. gamma is the angle between the ray and
+// the direction to the light [rad, 0 to pi], d_sv the light's distance [m]. (The paper's "cos gamma = r . r_sv" has the
 // wrong sign under its own definition of r_ab.)
 double homogeneous_airlight(double gamma, double d_sv, double d_vp, double beta);
 
-// The same with 1/d^2 replaced by 1/(d^2 + radius^2), the lengths in the exponent left alone; radius >= 0 [m].
+// Airlight with 1/d^2 replaced by 1/(d^2 + radius^2); the lengths in the exponent are not changed. radius >= 0 [m].
 double softened_homogeneous_airlight(const LightFromRay&, double d_vp, double beta, double radius);
 
 }  // namespace airlight::fogshop

@@ -34,7 +34,7 @@ struct Line {
 // From one point to another; any direction if they coincide.
 Line line_between(const Point3& from, const Point3& to);
 
-// What a line meets: for each Gaussian whose sphere the line crosses, its Eq. 31 along the line,
+// Crossings of a line with Gaussians: for each Gaussian whose sphere the line crosses, its Eq. 31 along the line,
 // integral over [0, t] = depth (erf(a (t - middle)) + erf(a middle)). Arrays have room for whole vectors.
 struct Crossings {
   int count = 0;
@@ -48,7 +48,7 @@ struct Crossings {
   std::vector<double> x, y, z, half_depth;  // of those arrays
   // Set by whole_depths.
   std::vector<double> whole;       // optical depth over the whole line [-]
-  std::vector<double> to_nearest;  // the same up to the place nearest to the centre, b_i^r of Eq. 10 clamped [-]
+  std::vector<double> to_nearest;  // optical depth up to the point nearest to the centre, b_i^r of Eq. 10 clamped [-]
 
   void reserve(int gaussians);
 };
@@ -59,14 +59,15 @@ void cross(const GaussianArrays&, const Line&, Erf, Crossings&);
 // Optical depth over [0, length] of the crossed line [-].
 double total_depth(const Crossings&, double length, Erf);
 
-// The same, and its parts: what the line's own length makes of each crossing, for any number of lights.
+// Like total_depth; also stores the parts of each crossing that depend on the line's own length, for any
+// number of lights.
 double whole_depths(Crossings&, double length, Erf);
 
 // total_depth at several ends; `t` and `depth` hold a multiple of 8 values, depth is overwritten.
 void depths_at(const Crossings&, const double* t, int count, double* depth, Erf);
 
-// The same, and for each channel the sum of the depths times the colours of their Gaussians: what the medium up to
-// there scatters. `gaussians` are those that were crossed; they have colours.
+// Like depths_at; also computes, for each channel, the sum of the depths times the colours of their Gaussians: the
+// light that the medium scatters up to there. `gaussians` are those that were crossed; they have colours.
 void scattering_depths_at(const Crossings&, const GaussianArrays& gaussians, const double* t, int count, double* depth,
                           double* const scattering[3], Erf);
 

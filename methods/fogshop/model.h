@@ -1,4 +1,4 @@
-// What the method knows before it looks: settings, medium, lights, and the tables of `prepare`.
+// State of the method before rendering: settings, medium, lights, and the tables of `prepare`.
 #pragma once
 #include <memory>
 #include <vector>

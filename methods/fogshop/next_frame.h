@@ -1,5 +1,5 @@
-// What the next frame keeps of the frame before it. Values are compared, not the objects that hold them: a medium that was copied and not
-// changed counts as unchanged.
+// Decides what the next frame keeps of the previous frame. Values are compared, not the objects that hold them: a
+// medium that was copied and not changed counts as unchanged.
 #pragma once
 #include "methods/fogshop/model.h"
 

@@ -4,7 +4,7 @@
 
 namespace airlight::fogshop {
 
-// What one light contributes per Gaussian, the same for all rays of a view.
+// Contribution of one light per Gaussian, equal for all rays of a view.
 struct PaperLight {
   Point3 position;
   double softness = 0;  // r_s^2 [m^2]

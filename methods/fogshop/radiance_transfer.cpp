@@ -85,7 +85,7 @@ RadianceTransfer::RadianceTransfer(const scene::Scene& scene, int order, int ray
             for (int k = 0; k < size; ++k) sum[k] += basis[i][k];
           }
         }
-        // What is hidden, taken from what is open everywhere.
+        // Visibility: 1 in all directions, minus the hidden directions.
         float* into = &coefficients_[s][std::size_t(v) * size];
         for (int k = 0; k < size; ++k) into[k] = float((k == 0 ? std::sqrt(4 * pi) : 0.0) - sum[k] * (4 * pi / rays));
       }

@@ -21,14 +21,14 @@ namespace airlight::fogshop {
 inline constexpr double most_transfer_vertices = 1e6;
 double mesh_vertices(const scene::Scene&);
 
-// What of a material reflects as Lambert's does; of a table nothing.
+// The Lambertian part of a material; 0 for a table.
 Rgb diffuse_albedo(const scene::Material&);
 
 class RadianceTransfer {
  public:
-  // `order` bands; `rays` directions per vertex, a fixed spiral of equal areas; surfaces farther than `reach` [m] hide
-  // nothing (infinite: all do), and reflect nothing; light is reflected between surfaces `bounces` times. The same for any
-  // number of threads.
+  // `order` bands; `rays` directions per vertex, a fixed spiral of equal areas. Surfaces farther than `reach` [m]
+  // neither occlude nor reflect (infinite: all surfaces count). Light is reflected between surfaces `bounces` times.
+  // Results do not depend on the number of threads.
   RadianceTransfer(const scene::Scene&, int order, int rays, double reach, int bounces, const scene::Execution&);
 
   // order^2 coefficients of the visibility (1 open, 0 hidden). Empty where there are none: on spheres and planes, and

@@ -9,7 +9,7 @@
 
 namespace airlight::fogshop {
 
-// What depends on the view point but not on the ray: paper variant only.
+// Values that depend on the view point but not on the ray: paper variant only.
 struct ViewModel {
   std::vector<PaperLight> lights;
   std::vector<double> shadow;  // T(s,v) of the Gaussians alone, by light [-], at extinction ratio 1
@@ -48,7 +48,7 @@ class RayAirlight {
   std::vector<LightFromRay> seen_;
   std::vector<int> places_;
   std::vector<double> t_, view_depth_, light_depth_;
-  // What the medium up to an edge scatters, per channel [-], at extinction ratio 1; unused where that is what is extinguished.
+  // Scattering of the medium up to an edge, per channel [-], at extinction ratio 1; unused if it equals the extinction.
   std::array<std::vector<double>, 3> scattering_;
 };
 

@@ -41,7 +41,7 @@ class ScatteredReflection {
   std::optional<SunReflection> sun_;
 };
 
-// What the settings ask for.
+// The kind of reflection that the settings ask for.
 std::unique_ptr<ScatteredReflection> make_reflection(const scene::Scene&, const Options&);
 
 // Why these surfaces cannot be lit so; empty if they can.

@@ -39,9 +39,10 @@ HWY_INLINE V mean_phase(double g, V xa, V xb, double h) {
   return MulAdd(set(7. / 90), ends, MulAdd(set(32. / 90), quarters, set(12. / 90) * phase_of(g, middle.x)));
 }
 
-// What the slices and their pairs share: integrals of h dt / (x^2 + h^2) over the slices, times the phase function; depths and transmittances of
-// the whole way from the light over an edge to the viewer, at every edge. h: distance of the light from the ray, softened by the source's
-// radius for 1/d^2; beside: the distance itself, for the phase function's angle.
+// Precomputes shared values of slices and pairs: integrals of h dt / (x^2 + h^2) over the slices, times the phase
+// function; depths and transmittances of the whole path from the light over an edge to the viewer, at every edge. h:
+// distance of the light from the ray, softened by the source's radius for 1/d^2; beside: the unsoftened distance, for
+// the phase function's angle.
 void Prepare(const SliceEdges& e, int slices, double along, double h, double beside, double g,
              const double* extinction_ratio, int channels, SliceScratch& out) {
   for (int k = 0; k < slices; k += int(hn::Lanes(d))) {

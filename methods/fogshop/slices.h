@@ -11,13 +11,14 @@
 
 namespace airlight::fogshop {
 
-// What is known at the edges of K slices: arrays of K + 1 values with room as slice_room says.
+// Values at the edges of K slices: arrays of K + 1 values with room as slice_room says.
 struct SliceEdges {
   const double* t;  // [m]
   // Depths [-], at extinction ratio 1, from the camera and from the light, the medium's constant included.
   const double* view_depth;
   const double* light_depth;
-  // What the medium up to the edge scatters, per channel [-], at extinction ratio 1; null: what it extinguishes, view_depth.
+  // Scattering of the medium up to the edge, per channel [-], at extinction ratio 1; null: it equals the
+  // extinction, view_depth.
   const double* const* scattering;
 };
 // Values that arrays over the edges hold: whole vectors are read beyond the last.

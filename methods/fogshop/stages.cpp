@@ -13,7 +13,8 @@
 namespace airlight::fogshop {
 namespace {
 
-// Of Gaussians, for a tree to be worth its while; the tolerance that rounding of the sums leaves room for.
+// `few`: below this number of Gaussians a tree does not pay. `finest`: the smallest tolerance that
+// rounding of the sums allows.
 constexpr int few = 24;
 constexpr double finest = 1e-6;
 

@@ -1,4 +1,4 @@
-// What a scene needs of the method, and what it does not.
+// Decides which stages of the method a scene needs.
 #pragma once
 #include "methods/fogshop/model.h"
 
@@ -13,13 +13,13 @@ struct Needs {
   bool surfaces;               // something to light
   bool low_resolution;         // airlight for some pixels only, and upsampling
   bool scattered;              // light that the medium scatters onto surfaces
-  bool point_harmonics;        // that of point lights: harmonics of the NPSF
+  bool point_harmonics;        // light of point lights in harmonics of the NPSF
   bool reflectances;           // B_pv in harmonics
   bool environment;            // an environment light that reaches the scene: the background
   bool environment_harmonics;  // its projection
   bool environment_airlight;   // light of the environment in the air
   bool depth_tree;             // average depths on surfaces
-  bool environment_psf;        // what Eqs. 27 and 28 spread it by
+  bool environment_psf;        // the point spread functions of Eqs. 27 and 28
   bool transfer;               // surfaces that shadow scattered light and environments
   bool sky_volume;             // the grid instead of Eq. 28
 

@@ -1,5 +1,5 @@
-// What lights surfaces beside the unscattered light of points: section 4 of Zhou et al. 2007, put together as a scene
-// needs it.
+// Light on surfaces, except the unscattered light of point lights: section 4 of Zhou et al. 2007,
+// combined as a scene needs it.
 #pragma once
 #include <functional>
 #include <memory>

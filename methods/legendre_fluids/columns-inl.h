@@ -49,7 +49,7 @@ struct RowsOut {
   std::ptrdiff_t stride;
 };
 
-// Of `P` points from the i-th on, and their mirror images.
+// Values at `P` points from the i-th on, and at their mirror images.
 template <int P>
 HWY_INLINE void PointsOf(const double* matrix, int count, int even, const Rows& in, const RowsOut& out, int i, int half,
                          int points, const Lanes& l) {
@@ -94,7 +94,8 @@ HWY_INLINE void ToPoints(const Tables& t, bool slopes, const Rows& in, const Row
   for (; i < t.half; ++i) PointsOf<1>(matrix, t.count, even, in, out, i, t.half, t.points, l);
 }
 
-// Of P even and P odd functions; `sums` has those of mirror images in its first half, their differences in the second.
+// Coefficients of P even and P odd functions. `sums`: sums of mirror images in the first half, their
+// differences in the second.
 template <int P>
 HWY_INLINE void FunctionsOf(const Tables& t, int first_even, int first_odd, const double* sums, const RowsOut& out,
                             const Lanes& l) {

@@ -11,9 +11,9 @@
 namespace airlight::legendre_fluids {
 namespace {
 
-// Of Runge-Kutta, dt n |u| at most: its limit is 2.83, at a spectral radius of at most .8 n |u|.
+// Stability limit of Runge-Kutta: dt n |u| at most. Theory allows 2.83, for a spectral radius of at most .8 n |u|.
 constexpr double step_rule = 2.5;
-// dt n^2 |u| at most where air comes in: the operator is not normal.
+// Limit of dt n^2 |u| where air comes in: the operator is not normal there.
 constexpr double inflow_rule = 2;
 
 Array values_on(const Array& x, const Array& y, const Array& z, const std::function<double(const Vec3&)>& f) {

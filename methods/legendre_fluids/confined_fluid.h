@@ -48,7 +48,7 @@ class ConfinedFluid : public Fluid {
  private:
   Components wind_at(double time) const;  // at the points; empty where there is none
   Vec3 gust(double time) const;
-  // What comes in with the wind, of Fluid::carried()[which].
+  // Adds the inflow with the wind for Fluid::carried()[which].
   void add_inflow(double time, const Array& r, std::size_t which, Array& rate) const;
   void diffuse(double dt);
   Array joined_state();

@@ -3,9 +3,10 @@
 //   phi_i(x) = integral of L_i from -1 to x, i = 1 .. n-1: 0 at both ends, phi_i' = L_i
 //   u_x = sum a_ijk phi_i(x) L_j(y) L_k(z), and so on;   r = sum r_ijk L_i(x) L_j(y) L_k(z)
 //
-// The box is mapped to [-1, 1]^d, d = 2 or 3. Velocities are in half sizes of the box per second: the divergence is then a sum of
-// coefficients of equal index, whatever the box. A velocity is one vector: its components one after the other, each [x][y][z] of the shape
-// that shape() says. What Gupta and Narasimhan 2007 lack (their equations 13 to 20 know no walls).
+// The box is mapped to [-1, 1]^d, d = 2 or 3. Velocities are in half sizes of the box per second: the
+// divergence is then a sum of coefficients of equal index, for any box. A velocity is one vector: its
+// components one after the other, each [x][y][z] with the shape shape(). Gupta and Narasimhan 2007 have
+// no such space (their equations 13 to 20 do not treat walls).
 #pragma once
 #include <array>
 #include <functional>
@@ -39,7 +40,8 @@ class ConfinedSpace {
   Array divergence(const Array& u) const;
   // The nearest velocity without divergence: orthogonal in the inner product below, exact to rounding.
   Array project(const Array& u) const;
-  // Of the box in world units: sum over components of the integral of u_a v_a [m^(d+2)/s^2]. inner(u, u) / 2 is the energy.
+  // Inner product over the box in world units: sum over components of the integral of u_a v_a [m^(d+2)/s^2]. inner(u,
+  // u) / 2 is the energy.
   double inner(const Array& u, const Array& v) const;
   // The velocity w with inner(w, v) = the sum of w_a h_a^2 v_a for all v: M u, weighted.
   Array weighted(const Array& u) const;
@@ -56,7 +58,7 @@ class ConfinedSpace {
   const Array& nodes() const { return points_.node; }  // along an axis, the second half the first one's mirror image
   const Array& weights() const { return points_.weight; }
   const Eigen::MatrixXd& phi() const { return phi_; }  // coefficients of phi in L: (n+1) x (n-1)
-  // What the operators are made of, for those who apply them elsewhere: pairs are of L and of phi. n > 1.
+  // Matrices of the operators, for other implementations: pairs are for L and for phi. n > 1.
   struct Matrices {
     const scene::LegendrePoints& points;  // of n + 1 coefficients
     const std::array<Eigen::MatrixXd, 2>&at_points, &from_points;
@@ -70,15 +72,16 @@ class ConfinedSpace {
   TensorShape points_shape() const;
   double integral(const Array& values) const;                 // over the box [m^d]
   Array scalar_from_points(const Array& values) const;        // L2 projection
-  Array from_points(const Components& values) const;          // the same of a velocity, before project()
+  Array from_points(const Components& values) const;          // L2 projection of a velocity, before project()
   Array advected(const Components& w, const Array& u) const;  // -w.grad u, projected in L2 but not onto div = 0
   Array scalar_advected(const Components& w, const Array& r) const;
   // Both at once, of a velocity that carries itself and scalars, beside a wind at the points (empty: none): rates one after the other. A
   // velocity that does not move carries (its rate is 0).
   void advected_together(const double* u, bool moves, const Components& wind, const std::vector<const double*>& scalars,
                          double* u_rate, const std::vector<double*>& rates) const;
-  // What comes in through the side of an axis (0: low, 1: high) with a weak condition: (w.n)(r - r_in) where w.n < 0. `speed` is w along
-  // the axis [half sizes per second] at the Gauss points of the side. Added to the above, |r| cannot grow for r_in = 0.
+  // Rate of inflow through the side of an axis (0: low, 1: high) with a weak condition: (w.n)(r - r_in)
+  // where w.n < 0. `speed` is w along the axis [half sizes per second] at the Gauss points of the side.
+  // Added to the above, |r| cannot grow for r_in = 0.
   Array scalar_inflow(int axis, int side, const Array& speed, const Array& r, double r_in) const;
   // L2 projection of a velocity whose components are given as scalars: forces.
   Array from_scalars(const Components& scalars) const;

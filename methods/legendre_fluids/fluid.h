@@ -1,4 +1,5 @@
-// What a variant of Legendre fluids moves: a velocity in coefficients of its own, and what it carries in n^d coefficients of L.
+// State of a variant of Legendre fluids: a velocity in coefficients of its own, and carried quantities
+// in n^d coefficients of L.
 #pragma once
 #include <cmath>
 #include <functional>
@@ -40,7 +41,7 @@ class Fluid {
   virtual void finish(double dt) = 0;
   // Do forces, sources and decay act for half of a step before the fluid moves (Strang)? Else sources act before, the others after.
   virtual bool halves() const { return false; }
-  // What is left of a quantity that decays, of the product of rate and time.
+  // Remaining share of a quantity that decays; `amount` is rate times time.
   virtual double faded(double amount) const { return std::exp(-amount); }
 
   // Half sizes per second at the Gauss points of the space; on a lattice of other points; its gradient along an axis.

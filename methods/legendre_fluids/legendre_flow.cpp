@@ -74,7 +74,7 @@ void LegendreFlow::step(double dt) {
   } catch (const scene::Unstable& e) {
     throw scene::Unstable(fmt::format("step {}, t = {:.6g} s: {}", steps_ + 1, time_, e.what()));
   }
-  // Of equal steps a product, not a sum that drifts.
+  // Time after equal steps is computed as a product, because a sum would drift.
   if (dt != last_step_) since_ = time_, equal_steps_ = 0;
   last_step_ = dt;
   time_ = since_ + ++equal_steps_ * dt;

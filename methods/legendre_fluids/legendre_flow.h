@@ -43,14 +43,15 @@ class LegendreFlow : public scene::Flow {
   // The fluid with its coefficients of now, for those who move them elsewhere than in the fluid.
   virtual Fluid& now() const { return *fluid_; }
 
-  // What acts on the fluid before it moves in a step of dt [s], and after it in the opposite order: what decays [s], and the times in which
-  // sources and forces do.
+  // Times of decay, sources and forces that act before the fluid moves in a step of dt [s]; after it
+  // they act in the opposite order.
   struct Acting {
     double decay;
     Interval sources, pushes;
   };
   std::array<Acting, 2> acting(double dt) const;
-  // What a time adds of each source [s], and of each force's acceleration [s]: 0 outside their times.
+  // Durations for which each source acts within a time interval [s], and for which each force does: 0
+  // outside their times.
   std::vector<double> source_seconds(const Interval& time) const;
   std::vector<double> push_seconds(const Interval& time) const;
   template <class Body>

@@ -61,7 +61,7 @@ bool has_open_sides(const FlowProblem& p) {
   return false;
 }
 
-// Of a wind that goes through the box; of all else 0.
+// Velocity of a wind that blows through the box; 0 for all other flows.
 Vec3 wind_of(const FlowProblem& p) {
   const auto* wind = std::get_if<scene::Wind>(&p.velocity);
   return wind && has_open_sides(p) ? wind->velocity : Vec3(Vec3::Zero());
@@ -108,7 +108,7 @@ void object_to_sides(const FlowProblem& p, std::vector<std::string>& reasons) {
       }
 }
 
-// What goes through the sides, and what it brings; nothing where nothing does.
+// Flow through the sides, and the quantities that it carries in; nothing if no air comes in.
 std::optional<Wind> wind_through(const std::shared_ptr<const FlowProblem>& problem, const ReferenceBox& box) {
   if (!air_comes_in(*problem)) return {};
   Wind wind;
@@ -134,7 +134,8 @@ std::optional<Wind> wind_through(const std::shared_ptr<const FlowProblem>& probl
   return wind;
 }
 
-// Of two densities the sum and the first one's share, which comes from nowhere but the start and does not spread.
+// mixing = albedo moves the sum of two densities and the first one's share, which has no sources or
+// inflow and does not diffuse.
 void object_to_albedo(const FlowProblem& problem, std::vector<std::string>& reasons) {
   const std::string mixing = "mixing = albedo with ";
   if (problem.densities.size() != 1)
@@ -148,7 +149,7 @@ void object_to_albedo(const FlowProblem& problem, std::vector<std::string>& reas
   if (problem.diffusivity > 0) reasons.push_back(mixing + "diffusivity");
 }
 
-// What the paper's variants do not have.
+// Reasons why the paper's variants do not support the problem.
 void object_to_paper(const FlowProblem& problem, const Settings& settings, std::vector<std::string>& reasons) {
   const std::string& variant = settings.text("variant");
   const FlowOptions o = read_flow_options(settings);

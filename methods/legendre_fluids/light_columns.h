@@ -1,10 +1,12 @@
-// What light from one direction comes through on its way to points of a Legendre box: the integral of the density to the face where it
-// enters.
+// Columns towards light from one direction, from points of a Legendre box: the integral of the density to the face
+// where the light enters.
 //
-// To one face that is a polynomial of the point: the integral of one of degree d over a length that is linear in it. So three polynomials
-// hold it, of the faces that the light comes in by, and the nearest is the right one. Where the light grazes, a face's polynomial is large
-// outside the part of the box that it is right in, and cancels there: such a face is integrated by Gauss points instead, exact as well.
-// Where the density is clamped there is no polynomial: then every point integrates what is positive on its own way.
+// To one face this column is a polynomial of the point: the integral of a polynomial of degree d over a
+// length that is linear in the point. So three polynomials suffice, for the faces by which the light
+// comes in, and the nearest face is the right one. Where the light grazes a face, the face's polynomial
+// is large outside the part of the box where it is right, and digits cancel. Such a face is integrated
+// by Gauss points instead, which is exact as well. Where the density is clamped there is no polynomial:
+// then every point integrates the positive part of the density on its own path.
 #pragma once
 #include <array>
 #include <vector>
@@ -25,8 +27,9 @@ class LightColumns {
   void along(const Ray&, const double* t, int count, double* columns) const;
   double at(const Point3& x) const;  // at one point of the world
 
-  // Of a density that is nowhere below 0, or taken as it is: from points of the box to the face of an axis that the light comes in by, and
-  // over lengths towards the light [m]. Points are in the box's own coordinates, lanes of them.
+  // Integrals for a density that is nowhere below 0, or that is not clamped: from points of the box to
+  // the face of an axis by which the light enters, and over lengths towards the light [m]. Points are
+  // lanes in the box's own coordinates.
   using LocalLanes = std::array<Lanes, 3>;
   Lanes to_face(int axis, const LocalLanes& local) const;
   Lanes over(const LocalLanes& local, const Lanes& length) const;

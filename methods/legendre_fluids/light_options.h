@@ -14,7 +14,7 @@ struct LightOptions {
 
 std::vector<scene::SettingSpec> light_settings();
 LightOptions read_light_options(const scene::Settings&);
-// What `ray` renders: directional lights for each environment, where these light something.
+// The scene that `ray` renders: with directional lights for each environment that lights something.
 std::shared_ptr<const scene::Scene> with_sky(std::shared_ptr<const scene::Scene>, const RayOptions&);
 std::vector<std::string> unsupported_light(const scene::Scene&, const LightOptions&);
 

@@ -23,7 +23,7 @@ class PanelRule {
   PanelRule(int n, int points, double tolerance);
   int coefficients() const { return n_; }
 
-  // What a thread needs.
+  // Working memory of a thread.
   struct Work {
     std::vector<double> series;
     long panels = 0;

@@ -49,13 +49,13 @@ struct LightRays::Walk {
     series.sources = lit.media.size() == 1 ? 1 : 3;
   }
 
-  // What the sum is in: with one medium its density alone, and colours come last.
+  // Unit of the sum: with one medium its density alone, and colours are multiplied at the end.
   Rgb unit() const {
     const Rgb irradiance = rays.media_.lights[light].irradiance;
     return source.size() == 1 ? Rgb(irradiance * source[0]) : irradiance;
   }
 
-  // Of the series: depths come first.
+  // Channel c of the series: depths come first.
   Eigen::Map<Eigen::VectorXd> channel(int c) { return {series.coefficients.data() + c * node.size(), node.size()}; }
 
   // Values of a density at the Gauss points of a stretch within its box.

@@ -19,7 +19,7 @@ struct RayOptions {
   int environment_directions = 256;  // that stand for each environment
 };
 
-// What rays read, and what a thread needs for them.
+// Statistics of rays, and working memory of a thread.
 struct RayVisits {
   long segments = 0, shadow_rays = 0;
   PanelRule::Work work;

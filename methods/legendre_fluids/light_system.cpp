@@ -79,7 +79,7 @@ Eigen::VectorXd LightSystem::apply(const Eigen::VectorXd& e) const {
   return result;
 }
 
-// What stands on the right for the light that comes in: on a face a constant has one coefficient, twice its value.
+// Right side for inflowing light: on a face a constant has one coefficient, twice its value.
 Eigen::VectorXd LightSystem::inflow_side(double inflow) const {
   const TensorShape& n = product_.shape();
   Eigen::VectorXd side = Eigen::VectorXd::Zero(scene::tensor_size(n));

@@ -28,7 +28,8 @@ class DensityProduct {
   const scene::TensorShape& shape() const { return n_; }
   Eigen::VectorXd operator()(const Eigen::VectorXd& field) const;
 
-  // What it is made of, along each axis: values of a field, and of the density, at the points; coefficients of values there.
+  // Matrices of the system along each axis: values of a field, and of the density, at the points;
+  // coefficients from values there.
   struct Matrices {
     std::array<Eigen::MatrixXd, 3> values, of_density, analysis;
   };
@@ -49,7 +50,7 @@ struct LightSolver {
   double tolerance = 1e-10;  // of GMRES: residual over right side
 };
 
-// What a system is made of along each axis, beside the density.
+// Parts of a system along each axis, without the density.
 struct LightAxes {
   LightAxes(const scene::TensorShape& n, const Vec3& rate, const LightSolver&);
   std::array<Eigen::MatrixXd, 3> along;  // of the derivative, of upwind with its inflow

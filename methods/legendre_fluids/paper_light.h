@@ -17,7 +17,7 @@ struct PaperOptions {
 struct PaperMedium {
   const scene::Medium* medium = nullptr;
   scene::LegendrePointer density;  // within the medium's region; null where nothing extinguishes
-  // What scatters of it, by channel: the sum of albedo times density; null: the medium's albedo times the density.
+  // Scattering density, by channel: the sum of albedo times density; null: the medium's albedo times the density.
   std::array<scene::LegendrePointer, 3> scattering;
   // Channels that scatter alike, but for a factor where there is one albedo.
   bool alike(std::size_t channel, std::size_t other) const;
@@ -26,7 +26,7 @@ PaperMedium paper_medium(const scene::Scene&);
 // Why the media are none such; empty if they are.
 std::string several_against(const scene::Scene&);
 
-// Of E_d and E_s: n along every axis, but 1 where the density is constant along it and nothing moves.
+// Shape of E_d and E_s: n along every axis, but 1 where the density is constant along the axis and nothing moves.
 scene::TensorShape intensity_shape(const scene::TensorShape& density, int n, const std::array<bool, 3>& moving);
 
 class PaperLight {
@@ -41,7 +41,8 @@ class PaperLight {
   // where that is null. E_s is linear in E_d: for several lights `direct` is their weighted sum.
   Eigen::VectorXd scattered(const Eigen::VectorXd& direct, const Vec3& direction, double sigma, double scattering,
                             const DensityProduct* what_scatters = nullptr, int* iterations = nullptr) const;
-  // Of n x n functions on the face `side` (-1 or 1) of an axis: the shape with 1 along it, whose function is L_0 (eq. 24).
+  // Restriction to the face `side` (-1 or 1) of an axis, n x n functions: the shape with 1 along the axis, with the
+  // function L_0 (eq. 24).
   Eigen::VectorXd on_face(const Eigen::VectorXd& coefficients, int axis, int side) const;
 
  private:

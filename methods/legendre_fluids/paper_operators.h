@@ -16,7 +16,7 @@ enum class Truncation { chebyshev, l2 };
 class PaperAdvection {
  public:
   PaperAdvection(int dimensions, int n, Truncation);
-  // U: one array per axis. What follows advects with it.
+  // Sets U, one array per axis. The following operators advect with it.
   void set_velocity(const Components& u);
   Array operator()(const Array& c) const;  // A c
   // Equation 14, exp(-dt A) c with the right sign, by its series, since A need not have an eigenbasis. Throws scene::Unstable where the

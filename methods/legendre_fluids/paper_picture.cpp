@@ -40,8 +40,8 @@ class PreparedPaper final : public scene::Prepared {
   PaperOptions options_;
   std::string settings_;
   PaperMedium media_;
-  const scene::Medium* medium_ = nullptr;  // of those
-  scene::LegendrePointer field_;           // likewise; null where nothing extinguishes
+  const scene::Medium* medium_ = nullptr;  // the medium of media_
+  scene::LegendrePointer field_;           // the density of media_; null where nothing extinguishes
   std::vector<scene::DirectionalLight> lights_;
   std::optional<PaperLight> light_;
   std::array<std::optional<DensityProduct>, 3> scatters_;  // of an albedo that is a field
@@ -52,7 +52,7 @@ class PreparedPaper final : public scene::Prepared {
   std::vector<scene::StageTime> times_;
 };
 
-// Of channels with the same extinction only the first is solved.
+// Solves once for channels with equal extinction and copies the result.
 template <class F>
 void for_extinctions(const Rgb& sigma_t, Coefficients& all, const F& solve) {
   for (int c = 0; c < 3; ++c) {

@@ -1,12 +1,14 @@
-// What an orthographic camera sees of the light that one medium scatters, in coefficients: equation 24, and what ends rays within.
+// Light that one medium scatters to an orthographic camera, in coefficients: equation 24, and objects
+// that end rays within the medium.
 //
 // E_s towards the camera solves  omega.grad E + sigma r E = q  along every ray. From x, nearer to the eye, to y the air between them sends
 //
 //   integral over [x, y] of q exp(-sigma column(x, .)) = E(x) - exp(-sigma column(x, y)) E(y)
 //
-// and a particle at y is seen as that plus exp(-sigma column(x, y)) times what it sends. This holds exactly for the series E that a system
-// gives, with the q that it solves the equation for. x is where a ray enters the box, y where it ends; of one that goes through E(y) is 0,
-// since no light comes in from behind. Columns are exact primitives of the density (light_columns.h), which is taken as it is.
+// A particle at y is seen as this airlight plus exp(-sigma column(x, y)) times the particle's own radiance. The
+// identity holds exactly for the series E that a system gives, with the q that it solves the equation for. x is where a
+// ray enters the box, y where it ends. For a ray that leaves the box E(y) is 0, since no light comes in from behind.
+// Columns are exact primitives of the density (light_columns.h), which is not clamped.
 #pragma once
 #include "methods/legendre_fluids/light_columns.h"
 #include "methods/legendre_fluids/paper_light.h"
@@ -24,11 +26,12 @@ struct Scattered {
 
 class PaperView {
  public:
-  // Of a density under lights, one or more. References are kept. `ends`: rays may end within the box, or columns are asked for.
+  // View of a density under one or more lights. Keeps the references. `ends`: rays may end within the
+  // box, or columns are asked for.
   PaperView(const scene::LegendreBox&, const PaperLight&, const Scattered&, const Rgb& sigma_t, const scene::View&,
             bool ends);
 
-  // Of the film, by pixel.
+  // A row of the film, by pixel.
   struct Row {
     std::vector<double> end;     // given: where its ray ends, infinite where nothing ends it
     std::vector<Rgb> airlight;   // up to there [W/m^2/sr]; below 0 where the series is

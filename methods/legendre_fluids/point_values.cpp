@@ -47,7 +47,7 @@ using V = hn::Vec<D>;
 constexpr D d;
 constexpr int width = int(hn::MaxLanes(d)), vectors = lanes / width;
 
-// Of n functions at the points: [function][vector].
+// Values of n functions at the points: [function][vector].
 void Basis(const Recurrence& r, int n, const double* x, V* values) {
   for (int v = 0; v < vectors; ++v) {
     const V at = hn::LoadU(d, x + v * width);

@@ -1,4 +1,4 @@
-// What gives airlight of its own: all media together, or in the paper's way each alone.
+// Terms of airlight: all media together, or each medium alone as in the paper.
 #pragma once
 #include <algorithm>
 #include <variant>

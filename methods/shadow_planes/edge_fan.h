@@ -1,8 +1,9 @@
 // Which silhouette edges a ray may cross, by the angle around a line through the light. Not in the paper.
 //
-// All rays from a camera, and all parallel rays, lie with the light in planes through one line: that from the light to
-// the camera, or along the rays. What shades a point of a ray lies in the same half of such a plane. So an edge is met
-// by rays whose angle around the line is between those of its ends, and is kept in a few of the sectors of that size.
+// All rays from a camera, and all parallel rays, lie with the light in planes through one line: the line from the light
+// to the camera, or along the rays. An occluder that shades a point of a ray lies in the same half of such a plane. So
+// an edge is met only by rays whose angle around the line is between those of the edge's ends, and is kept in a few of
+// the sectors of that size.
 #pragma once
 #include <vector>
 
@@ -26,8 +27,8 @@ class EdgeFan {
 
   static constexpr int levels = 8;  // of 4, 16, ... 65536 sectors
   static constexpr int total_sectors() { return first_sector(levels); }
-  // Of a whole turn, 4. Greater than what rounding does to angles of vectors whose part across the line is more than
-  // `least_across` of them; others are met by all rays, or meet all edges.
+  // `margin`: widening of angular ranges, where a whole turn is 4. It exceeds the rounding of angles for vectors with a
+  // share of more than `least_across` across the line. Other vectors are met by all rays, or meet all edges.
   static constexpr double margin = 1e-8, least_across = 1e-6;
 
  private:

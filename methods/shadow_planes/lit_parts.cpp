@@ -19,7 +19,7 @@ Rgb over(const LitLight& lit, const Ray& ray, Interval part, Counts& counts) {
   return sum;
 }
 
-// As if every plane alone were a shadow's: the integral of 1 - m/2.
+// Airlight as if each shadow plane acted alone: the integral weighted with 1 - m/2.
 Rgb signed_sum(const LitLight& lit, const Ray& ray, double end, int count, const std::vector<Crossing>& crossings,
                Counts& counts) {
   Rgb sum = Rgb::Zero();

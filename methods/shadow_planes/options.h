@@ -9,7 +9,7 @@
 namespace airlight::shadow_planes {
 
 struct Options {
-  // What integrates the airlight of a lit part of a ray: the mapped rule, or the paper's polynomial.
+  // Evaluator of the airlight of a lit part of a ray: the mapped rule, or the paper's polynomial.
   enum class Evaluator { rule, polynomial };
   Evaluator evaluator = Evaluator::rule;
   int nodes = 64;      // of the rule
@@ -41,9 +41,9 @@ std::string silhouettes_found(std::size_t edges, std::size_t lights);
 // Why the method cannot render the scene with these settings, a line each; empty: it can.
 std::vector<std::string> unsupported(const scene::Scene&, const Options&);
 
-// Of a medium in a scene against which there are no reasons: it is homogeneous [1/m].
+// Extinction [1/m] of a medium that `unsupported` accepts, which is therefore homogeneous.
 Rgb extinction_of(const scene::Medium&);
-// Whether both scatter alike in the same places. Of such media.
+// Whether both sets of accepted media scatter equally in the same regions.
 bool same_media(const std::vector<scene::Medium>&, const std::vector<scene::Medium>&);
 
 }  // namespace airlight::shadow_planes

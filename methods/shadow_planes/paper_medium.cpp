@@ -102,7 +102,7 @@ double PaperMedium::part(double k, const LightFromRay& from, double x_in, Interv
 // e^8.
 template <class LitPhase>
 double PaperMedium::before_foot(double k, double h, double begin, double end, LitPhase&& lit_phase) const {
-  // What is deeper in the medium adds nothing, though the light may be close to it there.
+  // Deeper parts of the medium add nothing, even if the light is close to the ray there.
   const double least = std::max(end, begin - (MappedRule<double>::depth_cut + std::log1p(k * begin * begin / h)) / k);
   double sum = 0, depth = 0;  // to where the piece begins
   for (double d = begin; d > least;) {

@@ -73,7 +73,7 @@ double mesh_reach(const scene::Scene& scene, const scene::Region* region, const 
   return most * std::max(1.0, levels / 4.0);
 }
 
-// Of one light and one tile.
+// Working memory for one light and one tile.
 struct PaperStages::Work {
   std::vector<Crossing> crossings;
   std::vector<std::size_t> first;  // of a pixel's crossings, and of the next pixel's
@@ -137,7 +137,7 @@ PaperStages::PaperStages(const scene::Scene& scene, const std::vector<scene::Lig
   seconds_.planes = watch.lap();
 }
 
-// Of all lights and media together: each mesh alone may pass its own limit.
+// Checks the memory of all lights and media together; each mesh alone can be within its own limit.
 void PaperStages::check_memory() const {
   const double cells = options_.boundary_cells, pieces = options_.edge_split, levels = options_.plane_levels;
   const bool vertices = options_.evaluation == Options::Evaluation::vertices;

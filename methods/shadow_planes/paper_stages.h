@@ -21,9 +21,9 @@ double mesh_reach(const scene::Scene&, const scene::Region*, const Point3& light
 
 class PaperStages {
  public:
-  // What is done once per picture: keys of planes, vertices. `lights` are those that the media scatter; `shadows` by light,
-  // empty: nothing casts shadows. Keeps references to all but the camera. Throws Error, naming the scene and the settings,
-  // if keys and vertices would take more than 1.5 GB.
+  // Does the work of one picture: keys of planes, vertices. `lights` are the lights that the media scatter; `shadows`
+  // by light, empty: nothing casts shadows. Keeps references to all arguments but the camera. Throws Error, naming the
+  // scene and the settings, if keys and vertices would take more than 1.5 GB.
   PaperStages(const scene::Scene&, const std::vector<scene::Light>& lights, const Options&,
               const std::vector<AirlightTerm>&, const std::vector<ShadowVolumes>& shadows, const scene::Camera&,
               int threads);

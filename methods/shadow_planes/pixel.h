@@ -1,4 +1,4 @@
-// What the stages of a picture pass on to one another.
+// Pixels, as the stages of a picture pass them on.
 #pragma once
 #include "scene/picture.h"
 

@@ -19,8 +19,8 @@ class PlaneOrder {
  public:
   PlaneOrder(const ShadowVolumes&, const scene::Camera&, int pieces);  // keeps a reference to the first
 
-  // Of a ray's crossings: sets the keys of the pieces that are crossed, and sorts by key, by number of the edge where
-  // keys are equal.
+  // Sorts the crossings of a ray: sets the keys of the crossed pieces, then sorts by key, and by edge
+  // number where keys are equal.
   void sort(const Ray&, Crossing* begin, Crossing* end) const;
 
  private:

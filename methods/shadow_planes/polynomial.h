@@ -16,7 +16,7 @@ namespace airlight::shadow_planes {
 // recurrences, exact.
 std::vector<double> taylor_coefficients(const PhaseForm&, double a, int degree, double centre = 0);
 
-// The same of e^(-a tan(theta)) p: the paper's form in a bounded medium (section 4.2). Times e^(a tan(centre)).
+// Coefficients for e^(-a tan(theta)) p, the paper's form in a bounded medium (section 4.2), times e^(a tan(centre)).
 std::vector<double> bounded_coefficients(const PhaseForm&, double a, int degree, double centre = 0);
 
 // The annex's, centre 0, with its errors: isotropic to degree 4, Rayleigh, hazy and murky to degree 2. `phase` is

@@ -45,7 +45,8 @@ HWY_INLINE V phase_of(const PhaseForm& phase, V v, V w) {
   return set(1);
 }
 
-// Of q over 2/(1 + q^2) dq, without s1.
+// Rule for the integral of e^(-a (q - q0)) times the phase function over d theta = 2/(1 + q^2) dq,
+// without the factor s1.
 double SumOfNodes(const MappedRule<double>& rule, const PhaseForm& phase, double a, const PartMap<double>& map) {
   const V one = set(1), c = set(map.c), q0 = set(map.q0);
   V sum = hn::Zero(d);

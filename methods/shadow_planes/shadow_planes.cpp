@@ -25,13 +25,13 @@ struct Needs {
   bool medium = false, shadows = false, surfaces = false;
 };
 
-// Of a tile.
+// Counters and times of a tile.
 struct Tally {
   Counts counts;
   StageSeconds seconds;
 };
 
-// What is computed once per picture.
+// Values that are computed once per picture.
 struct Frame {
   View view;
   const std::vector<ShadowVolumes>& shadows;  // by light; empty: nothing casts shadows

@@ -54,7 +54,7 @@ void ShadowVolumes::cross_edges(const Ray& ray, double end, const std::vector<in
                                 std::vector<Crossing>& crossings) const {
   const LightFromRay light = light_from_ray(ray, light_);
   if (!(light.h > 1e-12 * (light_ - ray.origin).norm())) return;
-  // Which side of the plane through ray and light a vertex is on: the same number for both edges that share it, so that
+  // Side of the plane through ray and light on which a vertex lies: equal for both edges that share the vertex, so that
   // no ray slips between them or meets both.
   const Vec3 side = ray.direction.cross(light_ - ray.origin);
   for (const int i : edges) {
@@ -73,7 +73,7 @@ void ShadowVolumes::cross_edges(const Ray& ray, double end, const std::vector<in
 }
 
 void ShadowVolumes::cross_spheres(const Ray& ray, double end, std::vector<Crossing>& crossings) const {
-  // What a ball hides from the light is convex: one stretch of the ray. It ends on the tangent cone or on the ball.
+  // The shadow of a ball is convex: one stretch of the ray, which ends on the tangent cone or on the ball.
   std::vector<double> places;
   for (const scene::Sphere& sphere : count_.spheres()) {
     const Vec3 c = sphere.center - light_, y = ray.origin - light_, w = ray.direction;

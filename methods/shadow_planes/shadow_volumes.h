@@ -28,8 +28,9 @@ Box scattering_box(const std::vector<scene::Medium>&);
 
 class ShadowVolumes {
  public:
-  // Of meshes that cannot stand between the light and a place in `air` nothing is looked at, and places outside are not
-  // asked for. `before`, of the last frame or null: of the same light, meshes that have not moved keep their silhouettes.
+  // Skips meshes that cannot stand between the light and a point of `air`; points outside of `air` must
+  // not be asked for. `before`: the volumes of the previous frame for this light, or null. Meshes that
+  // have not moved keep their silhouettes.
   ShadowVolumes(std::shared_ptr<const Occluders>, const Point3& light, const Box& air = everywhere,
                 const ShadowVolumes* before = nullptr);
 
@@ -43,7 +44,7 @@ class ShadowVolumes {
   // Appends the crossings of these edges within (0, end). `edges`: indices; a ray that passes the light closer than
   // 1e-12 of its distance crosses none.
   void cross_edges(const Ray&, double end, const std::vector<int>& edges, std::vector<Crossing>&) const;
-  // The same for all spheres, each as two.
+  // Appends the crossings of all spheres, each as two.
   void cross_spheres(const Ray&, double end, std::vector<Crossing>&) const;
 
   // Lit parts of the ray within [0, end], end [m] at or before its first hit, possibly infinite. `count` is m of its

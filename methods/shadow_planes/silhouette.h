@@ -44,8 +44,8 @@ struct SilhouetteEdge {
   int multiplicity;
 };
 
-// Does the light, at the origin, see the side of a triangle from which its corners run counter-clockwise? As far as
-// rounding tells, a light in its plane does.
+// Does the light, at the origin, see the side of a triangle from which its corners run counter-clockwise? A light that
+// lies in the plane up to rounding counts as seeing it.
 bool faces_light(const Vec3& a, const Vec3& b, const Vec3& c);
 
 // Every triangle is turned to face the light, and an edge counts by how often it is run along more often one way than

@@ -1,4 +1,4 @@
-// What is computed for a scene and what is left out, with the reasons.
+// The stages that a scene needs, and the stages that are left out, with the reasons.
 #pragma once
 #include "methods/shadow_planes/options.h"
 #include "scene/renderer.h"

@@ -107,7 +107,7 @@ bool SurfaceCount::is_wall(const scene::Hit& hit) const {
   return found != walls_.end() && found->surface == hit.surface && found->triangle == hit.triangle;
 }
 
-// The same sides as the silhouette's.
+// Edges and sides follow the conventions of silhouette().
 bool SurfaceCount::is_behind(const Wall& wall, const Vec3& y) const {
   Vec3 a = wall.corners[0], b = wall.corners[1], c = wall.corners[2];
   auto [ia, ib, ic] = wall.numbers;

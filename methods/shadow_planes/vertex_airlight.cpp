@@ -7,7 +7,7 @@
 namespace airlight::shadow_planes {
 namespace {
 
-// Of a point in the plane of a triangle; sum 1.
+// Barycentric coordinates of a point in the plane of a triangle; their sum is 1.
 Vec3 barycentric(const Point3& a, const Point3& b, const Point3& c, const Point3& x) {
   const Vec3 normal = (b - a).cross(c - a);
   const double wb = (x - a).cross(c - a).dot(normal), wc = (b - a).cross(x - a).dot(normal);

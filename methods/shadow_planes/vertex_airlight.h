@@ -9,9 +9,9 @@
 
 namespace airlight::shadow_planes {
 
-// Gamma(vertex) of the paper, the airlight [W/m^2/sr] that the ray from the camera to a vertex gathers if all of it is
-// lit, of one light and one air. As an image's rays do, a ray ends on the light's ball; without a ball, where it comes
-// within 1e-6 of the light's distance, since Gamma is infinite behind it.
+// Gamma(vertex) of the paper, for one light and one air: the airlight [W/m^2/sr] that the ray from the camera to a
+// vertex gathers if all of the ray is lit. A ray ends on the light's ball, like the rays of an image. Without a ball it
+// ends within 1e-6 of the light's distance, since Gamma is infinite behind the light.
 class VertexAirlight {
  public:
   VertexAirlight(const AirlightTerm&, const scene::Light&, const Point3& camera);  // keeps references to the first two

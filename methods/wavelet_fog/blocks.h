@@ -1,5 +1,5 @@
-// What is known of blocks of 2^l x 2^l cells: whether anything is there at all, and how far the coarser grid is off. Rays
-// pass empty blocks at once and read coarse grids where the error allows.
+// Bounds for blocks of 2^l x 2^l cells: whether a block is empty, and the error of the coarser grid. Rays pass empty
+// blocks at once and read coarse grids where the error allows.
 #pragma once
 #include <vector>
 
@@ -9,7 +9,7 @@ namespace airlight::wavelet_fog {
 
 class Blocks {
  public:
-  // Of the map and its coarser grids; errors only where asked for.
+  // Blocks of the map and of its coarser grids. Errors are computed only if `errors` is set.
   Blocks(const Levels&, int most_level, bool errors);
 
   int most_level() const { return int(level_.size()) - 1; }
@@ -33,7 +33,7 @@ class Blocks {
 double skipped_depth(const Levels&, const Blocks&, const scene::HeightProfile&, const scene::MapLine&, Interval t,
                      double enough, Visits&);
 
-// The same by blocks of the coarsest level that is off by at most `most` [per metre of t].
+// Like skipped_depth, but uses in each block the coarsest level with an error of at most `most` [per metre of t].
 double bounded_depth(const Levels&, const Blocks&, const scene::HeightProfile&, const scene::MapLine&, Interval t,
                      double most, double enough, Visits&);
 

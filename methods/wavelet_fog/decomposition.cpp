@@ -67,7 +67,8 @@ Coefficients filter_down(const Coefficients& c, const Taps& along_u, const Taps&
   const IndexRange range = coarse_range(c.range, along_u, along_v);
   const int u_first = range.lo[0], u_count = range.size[0], v_first = range.lo[1], v_count = range.size[1];
   Coefficients out{range, std::vector<double>(std::size_t(u_count) * v_count)};
-  // Rows are filtered along u as those along v need them. As many are kept as the filter has taps: row `at` in rows[at % size].
+  // Rows are filtered along u when the filter along v needs them. The last taps + 1 rows are kept: row
+  // `at` in rows[at % size].
   const int length = int(along_v.values.size());
   std::vector<std::vector<double>> rows(std::size_t(length) + 1, std::vector<double>(u_count));
   int made = c.range.lo[1];

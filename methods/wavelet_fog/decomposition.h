@@ -16,7 +16,7 @@ struct Coefficients {
 // Indices k that filters reach from a range, by c_i -> sum_i taps_{i-2k} c_i; and back, by a_k -> sum_k taps_{i-2k} a_k.
 scene::IndexRange coarse_range(const scene::IndexRange&, const Taps& along_u, const Taps& along_v);
 scene::IndexRange fine_range(const scene::IndexRange&, const Taps& along_both);
-// What either holds.
+// The smallest range that contains both.
 scene::IndexRange united(const scene::IndexRange&, const scene::IndexRange&);
 
 // sum_i taps_{i-2k} c_i for every k that some c_i reaches, along u, then along v.
@@ -40,7 +40,8 @@ struct Decomposition {
 Decomposition decompose(Coefficients, const Family&, int levels);
 Coefficients reconstruct(const Decomposition&, const Family&);
 
-// What is coarse of each level, from the map itself on: levels + 1 of them, by the filter `low` along both axes.
+// The coarse coefficients of each level, from the map itself on: levels + 1 of them, by the filter `low`
+// along both axes.
 std::vector<Coefficients> approximations(const Coefficients&, const Taps& low, int levels);
 // fine - P coarse, over every index that either reaches: what one level of wavelets adds, as splines of the finer level
 // (the paper's deconstruction, section 4.3). Independent of the choice of q.

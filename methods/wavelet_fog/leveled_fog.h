@@ -23,14 +23,14 @@ class LeveledFog {
   // Integral of the density from the ray's origin to `length` [m], which may be infinite; times sigma_t it is the optical
   // depth. By the variant of the settings: exact for direct and skip.
   double column(const Ray&, double length, Visits&) const;
-  // The same of a ray from the eye that the table was made for.
+  // The column of a ray from the eye, looked up in the table made for this eye.
   double column(const PolarTable&, const Ray&, double length, Visits&) const;
-  // Of a perspective view, over the directions in it.
+  // The table for a perspective view, over the directions in the view.
   PolarTable polar_table(const scene::View&, const scene::Execution&) const;
   const scene::Medium& medium() const { return *medium_; }
 
-  // Of another medium, a fogmap likewise, while the one before is still there: where the map is the same its levels stay,
-  // whether the fog has moved, turned or grown.
+  // Switches to another fogmap medium while the previous one still exists. If the map is unchanged its levels are kept,
+  // even if the fog has moved, turned or grown.
   void become(const scene::Medium&);
 
  private:

@@ -34,7 +34,7 @@ Levels make_levels(const SplineMap& map, const std::string& family_name, Coarse 
                             most_levels(map.range()), map.range().size[0], map.range().size[1]));
   Taps low;  // there is no family of degree 3: none is asked for where nothing is coarse
   if (levels > 0) low = coarse == Coarse::restricted ? restriction(map.degree()) : family(family_name).p_tilde;
-  // Of large maps little may be held at once: what is not needed any more goes before the next copy is made.
+  // Memory is short for large maps: free what is no longer needed before making the next copy.
   Levels result;
   Coefficients fine{map.range(), map.coefficients()};
   for (int l = 0; l < levels; ++l) {

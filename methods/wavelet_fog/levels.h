@@ -9,10 +9,10 @@
 
 namespace airlight::wavelet_fog {
 
-// What coarse grids are made of.
+// How coarse grids are made.
 enum class Coarse {
   wavelet,     // the family's analysis: of any sign, as the paper's
-  clamped,     // the same, negative values taken as 0 and the sum restored: a copy that can be rendered alone
+  clamped,     // wavelet, with negative values set to 0 and the sum restored: a copy that can be rendered alone
   restricted,  // p / 2: never negative
 };
 
@@ -38,7 +38,7 @@ void require_share(double mu);
 // d_max of detail m: length mu^m; mu^0 = 1 also for mu = 0.
 double reach_of(int m, double length, double mu);
 
-// What a ray read.
+// Counts of a ray's reads.
 struct Visits {
   long cells = 0, coefficients = 0, lookups = 0;
 };
@@ -49,7 +49,7 @@ double integral_of_level(const scene::SplineMap&, int level, const scene::Height
 // paper after deconstruction.
 double summed_depth(const Levels&, const scene::HeightProfile&, const scene::MapLine&, Interval inside, double length,
                     double mu, Visits&);
-// The same by one grid at a time: between two reaches the sum of details is the finer grid alone.
+// Like summed_depth, but reads one grid at a time: between two reaches the sum of details equals the finer grid.
 double telescoped_depth(const Levels&, const scene::HeightProfile&, const scene::MapLine&, Interval inside,
                         double length, double mu, Visits&);
 

@@ -14,7 +14,7 @@ struct Options {
   // How a ray's optical depth comes about.
   enum class Variant {
     paper,   // approximation and details of any sign, summed, details up to distances (section 4.3)
-    tele,    // the same by one grid at a time
+    tele,    // details up to distances, by one grid at a time
     direct,  // the map itself
     skip,    // the map itself, empty blocks passed at once
     bound,   // per block the coarsest level that keeps the error below the tolerance
@@ -39,11 +39,11 @@ struct Options {
   int sun_points = 3;     // of a cell; at least its degree + 1
   int shadow_steps = 64;  // shadow rays over the fog on a ray, at least; and sun_points in each cell
 };
-// Those that read coarse grids.
+// Whether a variant reads coarse grids.
 bool uses_levels(Options::Variant);
-// Those that sum up details of any sign.
+// Whether a variant sums up details of either sign.
 bool is_signed(Options::Variant);
-// Of a degree up to 2, of the family that the method takes: haar, cdf22, cdf33. Empty for 3.
+// Name of the wavelet family that the method uses for a degree up to 2: haar, cdf22, cdf33. Empty for degree 3.
 const char* family_of_degree(int degree);
 std::vector<scene::SettingSpec> setting_specs();
 Options read_options(const scene::Settings&);

@@ -19,7 +19,8 @@ struct UnitPieces {
   }                                                  // its support, in whole cells
   int wavelet_first() const { return q.first / 2; }  // where that begins
   int count() const { return scaling() + wavelet(); }
-  // Of scaling function and wavelet in turn: piece m is phi(u + m), or psi(u + wavelet_first + m); u in [0, 1], closed.
+  // Values of all pieces, first of the scaling function, then of the wavelet: piece m is phi(u + m), or psi(u +
+  // wavelet_first + m); u in [0, 1], closed.
   void at(double u, double* values) const;
 };
 

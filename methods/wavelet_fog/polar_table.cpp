@@ -17,14 +17,14 @@ namespace {
 using scene::MapLine;
 using scene::SplineMap;
 
-// Of a point to the farthest corner of the support [cells].
+// Distance of a point from the farthest corner of the support [cells].
 double farthest(const SplineMap& map, double u, double v) {
   const double x = std::max(std::abs(map.support_lo(0) - u), std::abs(map.support_hi(0) - u));
   const double y = std::max(std::abs(map.support_lo(1) - v), std::abs(map.support_hi(1) - v));
   return std::hypot(x, y);
 }
 
-// Of f and s f over [from, to] in a cell, by n + 1 Gauss points: exact for the degree 2 n + 1 of the second.
+// Adds the integrals of f and s f over [from, to] in a cell, by n + 1 Gauss points: exact for s f, of degree 2 n + 1.
 template <int n, class Entry>
 void add_piece(const SplineMap& map, const MapLine& line, int i, int j, double from, double to, Entry& sum) {
   const auto& rule = scene::spline_integral::unit_rule(n + 1);

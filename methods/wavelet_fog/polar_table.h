@@ -28,7 +28,7 @@ class PolarTable {
   // Up to r cells in the direction (du, dv), of any length but 0, in the fan. Cubic in the angle (Catmull and Rom) and in the distance
   // (Hermite, by the map's own values).
   Moments at(double du, double dv, double r) const { return at(place(du, dv), r); }
-  // The same for many distances in one direction.
+  // A direction, found once for lookups at many distances.
   struct Place {
     int first;  // of the four spokes around the direction
     double t;   // from the second to the third of them, in [0, 1]

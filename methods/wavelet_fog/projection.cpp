@@ -9,7 +9,7 @@
 namespace airlight::wavelet_fog {
 namespace {
 
-// Of two splines of degree n, d apart: N_{2n+1}(n + 1 + d).
+// Inner product of two splines of degree n, d apart: N_{2n+1}(n + 1 + d).
 double inner_product(int n, int d) { return scene::bspline_at_integer(2 * n + 1, n + 1 + std::abs(d)); }
 
 }  // namespace

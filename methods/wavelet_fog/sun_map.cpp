@@ -17,7 +17,7 @@ using scene::MapLine;
 
 MapLine to_sun_from(const Fogmap& fog, const Point3& x, const Vec3& to_sun) { return line_over(fog, {x, to_sun}); }
 
-// Of the support, in axes along and across the azimuth.
+// Extent of the support along and across the azimuth.
 struct Extent {
   double lo[2] = {infinity, infinity}, hi[2] = {-infinity, -infinity};
 };
@@ -81,7 +81,7 @@ SunMap::SunMap(const scene::Medium& medium, const Vec3& to_sun, double step, con
   entries_ = std::make_shared<const std::vector<Entry>>(std::move(entries));
 }
 
-// What fill_row() reads: rows in the map's own axes, the map, and whether it falls in layers.
+// Compares the inputs of fill_row(): rows in the map's own axes, the map, and whether it falls in layers.
 bool SunMap::has_entries_of(const SunMap& before) const {
   const scene::SplineMap &a = fog_->map, &b = before.fog_->map;
   const auto layered = [](const Fogmap& fog) { return std::holds_alternative<scene::Layers>(fog.profile); };

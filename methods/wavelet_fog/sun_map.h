@@ -33,12 +33,13 @@ class SunMap {
   static constexpr double least_way =
       2;  // cells over the ground up to which the walk is as short as a lookup, and exact
   static constexpr double most_entries = 1 << 25;
-  // Of a map with that step.
+  // Number of entries of a map with this step.
   static double entries(const scene::Fogmap&, const Vec3& to_sun, double step);
 
-  // The medium is a fogmap and outlives this. to_sun: unit, not below the horizon where the profile is exponential. An
-  // entry every `step` cells along rows, and a row every `step`. `before`: of the frame before, whose medium still lives; its entries are
-  // shared where the fog has moved over the ground alone, or has not changed. May be null.
+  // The medium is a fogmap and must outlive this object. to_sun: unit vector, not below the horizon where the profile
+  // is exponential. There is an entry every `step` cells along rows, and a row every `step` cells. `before`: the map of
+  // the previous frame, with its medium still alive, or null. Its entries are shared if the fog has only moved over the
+  // ground, or has not changed.
   SunMap(const scene::Medium&, const Vec3& to_sun, double step, const scene::Execution&,
          const SunMap* before = nullptr);
 

@@ -15,7 +15,7 @@
 
 namespace airlight::wavelet_fog {
 
-// What rays read.
+// Counts of the rays' reads.
 struct SunVisits {
   long points = 0, shadow_rays = 0;
 };

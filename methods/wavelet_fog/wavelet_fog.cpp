@@ -24,8 +24,8 @@ using scene::View;
 struct Cover {
   Rgb transmittance, opacity;
 };
-// Of depths >= 0, by one exponential a channel, once where they are equal: the smaller of the two to all its digits, since thin fog has
-// an opacity of 1e-8.
+// Transmittance and opacity of depths >= 0, with one exponential per channel, or one for equal channels. The smaller of
+// the two is exact to all digits, since thin fog has an opacity of 1e-8.
 Cover cover_of(const Rgb& depth) {
   Cover cover;
   for (int c = 0; c < 3; ++c) {

@@ -274,8 +274,8 @@ class FirstEstimates {
   bool spent = false;  // evaluations ran out before panels that matter were halved
 
  private:
-  // What it can hold at all, by its ends and nodes. While all nodes so far fell into the dark, panels with a bright
-  // end are looked into, and the least dark ones: a panel of another light may be the least dark of all.
+  // Upper bound of a panel's contribution, by its ends and nodes. While all nodes are in the dark, panels with a
+  // bright end are refined, and the least dark ones: a panel of another light may be the least dark of all.
   bool matters(const Panel& p, double least_depth) {
     const double width = p.hi - p.lo;
     Rgb most = p.value;

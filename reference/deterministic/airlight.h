@@ -25,14 +25,14 @@ struct Airlight {
   bool converged = true;  // the tolerance was met; also false where the radiance is infinite
 };
 
-// What can be precomputed for a scene; one serves all threads. Environment lights are left out: they are not delta
-// lights.
+// Precomputed values of a scene; one object serves all threads. Environment lights are left out: they
+// are not delta lights.
 class AirlightIntegrator {
  public:
   AirlightIntegrator(const scene::Scene&, const Accuracy&);  // keeps a reference to the scene
   ~AirlightIntegrator();
 
-  // Over 0 < t < t_end of the ray, t_end may be infinite. What lies beyond t_end does not matter to the view path;
+  // Airlight over 0 < t < t_end of the ray; t_end may be infinite. Objects beyond t_end do not matter to the view path;
   // light paths see all media and surfaces.
   Airlight operator()(const Ray&, double t_end) const;
 

@@ -1,4 +1,4 @@
-// What the quadrature is not asked to do: more work than anybody waits for.
+// Limits of the quadrature: it refuses more work than a user would wait for.
 #pragma once
 #include <string>
 

@@ -24,7 +24,7 @@ bool carries(const FlowProblem& p) {
 }
 bool is_uniform(const FlowProblem& p) { return p.blobs.empty() && !p.wave && !p.density_grid; }
 
-// Of the wind; of anything at rest 0.
+// Velocity of the wind; 0 for a flow at rest.
 Vec3 wind_of(const FlowProblem& p) {
   const auto* wind = std::get_if<scene::Wind>(&p.velocity);
   return wind ? wind->velocity : Vec3(Vec3::Zero());

@@ -17,7 +17,8 @@ struct Union {
   void operator+=(const Union& other) { *this += other.all; }
 };
 
-// What can be seen of the media on a ray up to its end: a colour channel ends in a constant medium, or where the media end that extinguish it.
+// The visible range of the media on a ray up to its end: a colour channel ends in a constant medium, or where the media
+// end that extinguish it.
 Interval seen(const std::vector<ray_marcher::Layer>& layers, const Ray& ray, double end) {
   Union of_channel[3], all;
   Rgb dark = Rgb::Constant(most_far);

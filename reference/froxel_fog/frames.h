@@ -9,7 +9,7 @@ namespace airlight::froxel_fog {
 // (volumetric_fog_process.glsl, Halton), Unity HDRP (zSeq of its volumetric lighting).
 Vec3 jitter(Jitter, int frame);
 
-// What the history weighs where a frame (0, 1, ...) of the same picture is added to it; the frame weighs the rest.
+// Weight of the history when a frame (0, 1, ...) of one picture is added to it; the frame has the remaining weight.
 float history_weight(const Options&, int frame);
 
 // Work done.
@@ -20,8 +20,8 @@ struct Counters {
   void operator+=(const Counters&);
 };
 
-// What a frame is blended into: what the volume holds, which weighs `weight`, or what the last picture held where the froxel's middle was in
-// it, which weighs that too; what was not in it counts nothing.
+// History that a frame is blended into, with the weight `weight`: the content of the volume, or the content of the last
+// picture where the froxel's middle was in it. A froxel outside the last picture has no history.
 struct Before {
   float weight = 0;
   const History* picture = nullptr;

@@ -1,4 +1,4 @@
-// What a user can set on froxel fog.
+// Settings of froxel fog.
 #pragma once
 #include "reference/froxel_fog/slices.h"
 #include "reference/lit_media/lit_media.h"
@@ -35,7 +35,8 @@ struct Options {
   lit_media::Options media;
 };
 
-// All settings with the defaults of `fitted`. What a preset may make another setting read is accepted beside that preset.
+// All settings with the defaults of `fitted`. A setting that is read only beside others is also accepted beside the
+// presets of engines, whose defaults may enable it.
 std::vector<scene::SettingSpec> option_specs();
 
 // The settings with the defaults of their preset. Throws Error for a given one that is not read beside the others.

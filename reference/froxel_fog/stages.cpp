@@ -18,7 +18,7 @@ std::string describe_grid(const scene::Scene& scene, const Options& o, Interval 
       media.empty() ? 0 : o.slices * (slices.encode(media.hi) - slices.encode(media.lo)));
 }
 
-// What of the media the range leaves out; empty if nothing.
+// The part of the media that the range leaves out, as text; empty if there is none.
 std::string beyond(Interval media, Interval range) {
   if (range.empty()) return fmt::format("media from {:.3g} to {:.3g} m lie before near", media.lo, media.hi);
   if (media.lo >= range.lo && media.hi <= range.hi) return "";

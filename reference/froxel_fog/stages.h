@@ -1,4 +1,4 @@
-// What froxel fog does for a scene seen by its own camera, and what it leaves out and why.
+// Stages of froxel fog for a scene seen by its own camera, and the stages that are left out and why.
 #pragma once
 #include <string>
 #include <vector>

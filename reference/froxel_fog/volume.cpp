@@ -41,7 +41,8 @@ std::vector<float> filter_weights(Filter filter) {
 
 namespace {
 
-// Of `count` froxels `stride` apart. The weights are used as given but for the middle, which takes what rounding leaves: constants are kept.
+// Filters a line of `count` froxels, `stride` apart. All weights are used as given, except the middle one, which is 1
+// minus their sum: constants are preserved.
 void filter_line(const std::vector<float>& weights, int count, std::size_t stride, Froxel* line,
                  std::vector<Froxel>& copy) {
   copy.resize(std::size_t(count));

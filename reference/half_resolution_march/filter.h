@@ -22,9 +22,9 @@ Neighbours neighbours(const Blocks&, int pixel);
 // Two neighbours of a film position [film pixels], like those of a film pixel.
 Neighbours neighbours_at(const Blocks&, double x);
 
-// At a film pixel of this depth: bilinear; but, if `nearest_depth`, the neighbour of nearest depth where the four differ from it by more
-// than upsample_edges * edge together. Of several that are equally near the one that weighs most, of those
-// the first.
+// Value at a film pixel of this depth by bilinear interpolation. With `nearest_depth`, the neighbour of nearest depth
+// is used instead, where the depth differences of all four add up to more than upsample_edges * edge. Among equally
+// near neighbours the one with the largest weight is used; among equal weights the first.
 FogPixel upsampled(const LowFilm&, const Neighbours& across, const Neighbours& down, double depth, bool nearest_depth,
                    double edge);
 

@@ -1,4 +1,4 @@
-// What the half-resolution march is not asked to do.
+// Limits of the half-resolution march.
 #pragma once
 #include <string>
 #include <vector>

@@ -6,7 +6,8 @@
 namespace airlight::half_resolution_march {
 namespace {
 
-// What a step of this optical depth lets through, and the rest: the smaller of the two to all its digits, by one exponential.
+// Transmittance of a step of this optical depth, and the rest to 1: the smaller of the two to all its
+// digits, by one exponential.
 struct Share {
   double through, taken;
 };

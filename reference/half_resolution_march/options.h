@@ -1,4 +1,4 @@
-// What a user can set on the half-resolution march.
+// Settings of the half-resolution march.
 #pragma once
 #include <vector>
 

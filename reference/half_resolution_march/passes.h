@@ -9,7 +9,7 @@
 
 namespace airlight::half_resolution_march {
 
-// What is prepared once for a scene.
+// Values that are prepared once for a scene.
 struct Plan {
   std::shared_ptr<const scene::Scene> scene;
   Options options;
@@ -23,9 +23,10 @@ bool seen_behind(const scene::Scene&);
 struct Counters {
   lit_media::Counters media;
   long long rays = 0;    // marched
-  long long pixels = 0;  // of which it was asked what ends their rays
+  long long pixels = 0;  // camera rays whose end was looked up
   double longest = 0;    // way of a marched ray through media [m]
-  // Marched pixels that meet media, after the first picture: blended with the last one, or not in it. Of the former: limited by `clamp`.
+  // Marched pixels that meet media, after the first picture: `used` are blended with the last picture, `rejected` are
+  // not in it, `clamped` are used and were limited by `clamp`.
   long long history_used = 0, history_rejected = 0, history_clamped = 0;
   void operator+=(const Counters& other) {
     media += other.media;

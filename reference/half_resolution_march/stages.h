@@ -1,4 +1,4 @@
-// What is done for a scene, and what is left out and why.
+// Stages for a scene, and the stages that are left out and why.
 #pragma once
 #include <vector>
 

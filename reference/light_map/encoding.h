@@ -1,5 +1,5 @@
-// What a texel holds of the optical depth along its ray. Depths along the ray are shares of the map's, in [0, 1]; steps
-// share that equally, step i has the optical depth tau_i and its middle at d_i = (i + 1/2) / steps.
+// Encodings of the optical depth along the ray of a texel. Depths along the ray are shares of the map's range, in [0,
+// 1]. Steps divide the range equally; step i has the optical depth tau_i and its middle at d_i = (i + 1/2) / steps.
 //
 //   slices   N + 1 optical depths at k/N; linear between them.
 //   avsm     n nodes (d, T), straight lines of transmittance between them. Salvi, Vidimce, Lauritzen, Lefohn 2010:
@@ -32,7 +32,7 @@ class Encoder {
   explicit Encoder(const Options&);
   // The optical depths of all steps to floats_per_texel floats.
   void encode(std::span<const double> steps, float* texel) const;
-  // What the coefficients of `fourier` take of each step's optical depth, step by step.
+  // Weights of each step's optical depth in the coefficients of `fourier`, step by step.
   const std::vector<double>& waves() const { return waves_; }
 
  private:

@@ -24,8 +24,8 @@ using VD = hn::Vec<D>;
 using VF = hn::Vec<F>;
 using VI = hn::Vec<I>;
 
-// From metres around the light to texels and the share of the depth; beside the map the depth is 0. As fold() and
-// place() of projection.cpp.
+// Converts metres around the light to texels and the share of the depth; outside the map the share is 0. Like fold()
+// and place() of projection.cpp.
 HWY_INLINE void on_octahedron(const PlaceRule& rule, VD& x, VD& y, VD& depth) {
   const D d;
   const VD zero = hn::Zero(d), one = hn::Set(d, 1.0), z = depth;

@@ -48,7 +48,8 @@ Interval VariedMedia::Part::extent(const Ray& ray, Interval t) const {
   return grid_of(medium->field) ? scene::extent(medium->field, ray, t) : clip(scene::Region(box), ray, t);
 }
 
-// Of some texels in a row: the parts of steps that lie in one medium, and the optical depths of all steps.
+// Working memory for some texels in a row: the parts of steps that lie in one medium, and the optical
+// depths of all steps.
 struct LightMap::Row {
   std::vector<double> x, y, z, length;
   std::vector<float> density;
@@ -163,8 +164,8 @@ void LightMap::march(const Densities& densities, int j, int begin, int end, Row&
   }
 }
 
-// What interpolation reads beside the outermost texels: the octahedron's edges meet themselves, their halves exchanged;
-// other maps end there.
+// Sets the border that interpolation reads around the outermost texels. The octahedron's edges meet themselves, with
+// their halves exchanged; other maps end there.
 void LightMap::make_border() {
   const int size = options_.size, floats = floats_per_texel(options_);
   const bool whole = projection_.whole_sphere();

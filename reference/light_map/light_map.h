@@ -1,9 +1,9 @@
 // Optical depth towards one light, prepared: a map of texels seen from the light, each with the optical depth along its
 // ray (encoding.h). It stands for shadow rays through media: a look-up costs the same however far the light is.
 //
-// The map holds what varies. A constant (homogeneous media, the constant under Gaussians) is added in closed form: that
-// is exact at its boundary, cheaper than a look-up, and goes on for ever where the medium does. What varies has an end,
-// so that a map's depths always have one.
+// The map holds the varying density. A constant density (homogeneous media, the constant under Gaussians) is added in
+// closed form, which is exact at its boundary, cheaper than a lookup, and works for unbounded media. Varying densities
+// are bounded, so that a map's depths always have an end.
 //
 // Texels hold optical depths of all media together, in float. Encodings approximate exp(-optical depth) of the sum, which
 // is no sum over media, and a look-up costs the same for any number of them. They hold three, one for each colour
@@ -26,8 +26,8 @@
 
 namespace airlight::light_map {
 
-// What varies of a medium's density: its density less its constant_part, at n points in its region, `medium` being the
-// number of the medium. Arrays have room for n rounded up to a multiple of 64. Called from several threads.
+// The varying part of a medium's density: its density minus its constant_part, at n points in its region; `medium` is
+// the number of the medium. Arrays have room for n rounded up to a multiple of 64. Called from several threads.
 using Densities = std::function<void(std::size_t medium, std::size_t n, const double* x, const double* y,
                                      const double* z, float* density)>;
 

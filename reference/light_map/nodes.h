@@ -23,8 +23,8 @@ class Nodes {
   int count() const { return count_; }
   const Node& operator[](int i) const { return nodes_[i]; }
 
-  // A node behind all others. Of more than `most` the inner one goes whose removal changes the area least, the first
-  // where several do.
+  // Appends a node behind all others. If there are more than `most`, removes the inner node whose removal changes the
+  // area least, the first of several.
   void add(const Node& node) {
     nodes_[count_] = node;
     areas_[count_] = infinity;  // an end never goes

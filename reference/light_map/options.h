@@ -1,4 +1,4 @@
-// What a user can set on a map of the light.
+// Settings of a map of the light.
 #pragma once
 #include <string>
 
@@ -20,7 +20,7 @@ struct Options {
 constexpr int most_size = 4096, most_steps = 4096, most_slices = 1024, most_nodes = 64, most_coefficients = 63;
 
 std::string encoding_name(Encoding);
-// Of one optical depth.
+// Number of floats that store one channel of optical depth.
 int floats_per_texel(const Options&);
 // Texels with the border of one texel that interpolation reads.
 double bytes_per_plane(const Options&);

@@ -12,7 +12,7 @@ namespace {
 constexpr int rays_across = 16;
 constexpr double dark = 0.05;  // what is seen through less is not looked at
 
-// What is wrong with the steps of one ray: the greatest of each, 0 where nothing is.
+// Faults of the steps of one ray: the greatest of each kind, 0 if there is none.
 struct Coarse {
   double depth = 0;           // of a step
   double step = 0, lamp = 0;  // [m] a step beside a lamp, and how far the ray passes from it

@@ -1,5 +1,6 @@
-// What media swallow and scatter at points of a camera ray, lit as engines of today light them: the medium's own shadow comes from
-// maps of the lights (reference/light_map) or is left out. Froxels and the half-resolution march sample it. Light scattered once.
+// Extinction and scattering at points of a camera ray, lit as in today's game engines: the medium's own
+// shadow comes from maps of the lights (reference/light_map) or is left out. Froxels and the
+// half-resolution march sample it. Light is scattered once.
 #pragma once
 #include <memory>
 #include <string>
@@ -25,7 +26,7 @@ void bind(scene::SettingBinder&, Options&);
 // Reasons why these options cannot be used with the scene.
 std::vector<std::string> unsupported(const scene::Scene&, const Options&);
 
-// What is known of a scene before maps are made, on the CPU and on the device alike.
+// Plan of a scene before maps are made, on the CPU and on the device alike.
 struct Plan {
   std::shared_ptr<const scene::Scene> scene;
   Options options;
@@ -80,7 +81,7 @@ class LitMedia {
   // The extinction alone.
   void extinction_along(const Ray&, const std::vector<double>& t, Samples&) const;
 
-  // What media leave of light l on its way to x.
+  // Transmittance of the media on the way of light l to x.
   Rgb transmittance_to_light(std::size_t l, const Point3& x) const;
 
   const Plan& plan() const { return plan_; }

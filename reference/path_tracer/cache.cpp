@@ -75,7 +75,7 @@ std::vector<std::uint64_t> fewer_samples(const std::string& folder, const Identi
   return counts;
 }
 
-// What the folder has of the first samples of this picture.
+// The first samples of this picture that the folder contains.
 Accumulation start_from(const World& world, const scene::View& view, const std::string& folder,
                         std::vector<std::string>& notes) {
   Options options = world.options();

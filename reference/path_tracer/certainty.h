@@ -1,4 +1,4 @@
-// What a picture may claim where its samples brought no light: nothing, unless no light can come there at all.
+// Error bounds for pictures whose samples brought no light: the error is 0 only if no light can come there at all.
 #pragma once
 #include "reference/path_tracer/world.h"
 #include "scene/renderer.h"
@@ -8,7 +8,7 @@ namespace airlight::path_tracer {
 // For each channel: can any path from the eye along the ray end on a light? False where all lights are black or absent,
 // or the ray meets nothing that scatters or reflects and sees no environment. True does not mean that light comes.
 std::array<bool, 3> may_shine(const World&, const Ray&);
-// The same for any ray of a pixel: its centre, or a 4 x 4 pattern where the pixel is a mean.
+// May any ray of a pixel end on a light? Tests its centre, or a 4 x 4 pattern where the pixel is a mean.
 std::array<bool, 3> may_shine(const World&, const scene::View&, int x, int y);
 
 // Standard error of the mean of n samples of these sums. Where so few of them contributed that their scatter proves

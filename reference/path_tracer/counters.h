@@ -1,4 +1,4 @@
-// What a render really did. Integers, so that their sums do not depend on the order of threads.
+// Statistics of a render. Counters are integers, so that their sums do not depend on the order of threads.
 #pragma once
 #include <cstdint>
 #include <map>

@@ -64,7 +64,7 @@ std::string unresolved(const World& world, const Accumulation& a) {
   return fmt::format("{}", fmt::join(names, " "));
 }
 
-// Of all samples of a picture, by magnitude as far as is kept: negative ones are summed only.
+// Greatest sample of a picture by magnitude. Negative samples are only stored as sums, so that their mean is used.
 Rgb greatest_sample(const TallyLayout& layout, const std::vector<TallyNode>& tiles) {
   Rgb greatest = Rgb::Zero();
   for (const TallyNode& tile : tiles)

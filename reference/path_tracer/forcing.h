@@ -27,9 +27,9 @@ struct Flight {
 // 1; boost >= 1, infinity: always.
 Flight force(const Media&, const Ray&, double tmax, double boost, Counters&);
 
-// What the collisions of a scene so thin that hardly any path would have one are multiplied by, so that the relative
-// error at a number of samples does not depend on its extinction; 1 where the media are not that thin. The thickness is
-// the greatest optical depth through the middle of the media, over at most the size of what is in the scene.
+// Factor on the probability of collisions in a scene so thin that hardly any path would have one. With it the relative
+// error at a number of samples does not depend on the extinction. 1 for media that are not that thin. The thickness is
+// the greatest optical depth through the middle of the media, over at most the size of the scene's content.
 double collision_boost(const scene::Scene&);
 
 }  // namespace airlight::path_tracer

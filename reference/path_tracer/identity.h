@@ -1,4 +1,4 @@
-// What must be equal for two sets of samples to belong to one picture.
+// Data that must be equal for two sets of samples to belong to one picture.
 #pragma once
 #include <cstdint>
 #include <string>

@@ -14,7 +14,7 @@ using RaySource = std::function<Ray(const RandomBlock&)>;
 // `pixel` names the random numbers. Throws Error, beginning with `where`, for a sample that is not finite.
 void add_samples(const World&, const CameraRay&, std::uint32_t pixel, std::uint64_t first, std::uint64_t count,
                  const TallyLayout&, double* sums, Counters&, const std::function<std::string()>& where);
-// The same, each along its own ray.
+// Samples [first, first + count), each along its own ray.
 void add_samples(const World&, const RaySource&, std::uint32_t pixel, std::uint64_t first, std::uint64_t count,
                  const TallyLayout&, double* sums, Counters&, const std::function<std::string()>& where);
 

@@ -1,5 +1,5 @@
-// Which light to sample: in proportion to what it would send to a point in vacuum, with a positive probability for
-// every light that can contribute.
+// Chooses a light to sample: in proportion to the light that it would send to a point in vacuum, with a positive
+// probability for every light that can contribute.
 #pragma once
 #include <vector>
 

@@ -62,7 +62,7 @@ class Media {
   Rgb transmittance(const Ray& ray, double tmax, Counters& counters) const {
     return transmittance(optical_depth(ray, tmax, counters));
   }
-  // The same by ratio tracking: unbiased, noisy; only where grey().
+  // Transmittance by ratio tracking: unbiased, noisy; only where grey().
   Rgb ratio_transmittance(const Ray&, double tmax, const SampleRandom&, std::uint32_t vertex, std::uint32_t branch,
                           Counters&) const;
 

@@ -24,8 +24,9 @@ struct Options {
   bool column_transmittance = true;  // noise-free; false: ratio tracking
   bool forced = true;                // collisions are forced where they are rare; see forcing.h
   enum class Connection { automatic, always, never } connection = Connection::automatic;
-  // Which paths count: all; those from the light to a surface to the eye, scattered at most once on the way to the
-  // surface and not behind it; of these the scattered ones alone; those whose last event before the eye is in a medium.
+  // Which paths count. all: every path. lit_surface: paths from the light to a surface to the eye, scattered at most
+  // once on the way to the surface and not behind it. scattered_to_surface: the scattered ones of these. scattered:
+  // paths whose last event before the eye is in a medium.
   enum class Paths { all, lit_surface, scattered_to_surface, scattered } paths = Paths::all;
   bool only_lit_surfaces() const { return paths == Paths::lit_surface || paths == Paths::scattered_to_surface; }
 };

@@ -172,7 +172,8 @@ bool Walk::collide(Path& path, const Collision& collision, Vertex& v) const {
   return path.throughput.maxCoeff() > 0;
 }
 
-// What is at the end of the segment: a surface, or nothing, where the path leaves the scene.
+// Continues at the end of the segment: true on a surface where the path goes on; a path that meets
+// nothing leaves the scene.
 bool Walk::meet_surface(Path& path, Vertex& v) const {
   const scene::RayEnd& end = path.segment->end;
   if (ends_unseen(path)) return false;

@@ -40,7 +40,7 @@ double thinnest_depth(const scene::Medium& medium, int c) {
   return least > 0 ? medium.sigma_t[c] * least : 0;
 }
 
-// Of which a density is the sum, beside a constant.
+// Number of terms that are summed to evaluate the density at a point, without a constant.
 double terms_of(const scene::DensityField& field) {
   return scene::match(
       field, [](const scene::Homogeneous&) { return 0.0; },

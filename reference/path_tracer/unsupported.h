@@ -1,4 +1,4 @@
-// What the path tracer will not render, and why: scenes without a finite answer, or without one in finite time.
+// Scenes that the path tracer refuses, and why: scenes without a finite answer, or without one in finite time.
 #pragma once
 #include <string>
 #include <vector>

@@ -20,10 +20,12 @@ class World {
   const Options& options() const { return options_; }
   const Media& media() const { return media_; }
   const Lights& lights() const { return lights_; }
-  // Of the collisions that follow no other: see collision_boost. 1 where collisions are not forced.
+  // Factor on the probability of collisions that follow no other collision (see collision_boost). 1
+  // where collisions are not forced.
   double boost() const { return boost_; }
 
-  // Is nothing in the way from x to direction w before tmax? Surfaces, and balls of lights but `except`.
+  // Is the segment from x in direction w free before tmax? Surfaces block it, and the balls of all
+  // lights except `except`.
   bool visible(const Ray&, double tmax, int except) const;
 
  private:
@@ -42,7 +44,7 @@ struct Segment {
   Flight flight;  // how collisions on it are drawn
 };
 
-// What is the same for every path along one camera ray: computed once for a pixel's centre.
+// Values shared by every path along one camera ray: computed once for a pixel's centre.
 struct CameraRay {
   Segment segment;
   Rgb background;  // radiance seen through the medium, where no surface ends the ray

@@ -22,7 +22,7 @@ struct Frame {
   Vec3 vector(const Vec3& v) const;
 };
 
-// What does not depend on where the grid stands: shared by frames in which it moves.
+// Data that does not depend on the grid's position: shared by frames in which it moves.
 struct GridSamples {
   // Each sample with its neighbour along z, x fastest: four corners of a cell are then 16 bytes in a row.
   std::vector<float> pairs;
@@ -37,7 +37,7 @@ struct GridField {
   std::shared_ptr<const GridSamples> samples;
 
   static constexpr int padding = 2, brick_shift = 2;
-  // Of the brick around a local point inside the padded grid.
+  // Free distance of the brick around a local point inside the padded grid.
   float free_at(double px, double py, double pz) const {
     const int x = int(px) >> brick_shift, y = int(py) >> brick_shift, z = int(pz) >> brick_shift;
     return samples->free_distance[x + std::size_t(bricks[0]) * (y + std::size_t(bricks[1]) * z)];

@@ -66,8 +66,8 @@ long long gaussian_density(const GaussianField&, std::size_t n, const float* x, 
                            float* density);
 long long gaussian_columns(const GaussianField&, const StepRule&, std::size_t n, const LocalRays&, float* column);
 
-// The same without steps: exact but for rounding, absolute error 2e-7 of each Gaussian's whole column. Requires
-// !any_negative.
+// Columns without steps: exact up to rounding, with an absolute error of 2e-7 of each Gaussian's whole
+// column. Requires !any_negative.
 void gaussian_integrals(const GaussianField&, std::size_t n, const LocalRays&, float* column);
 
 // Weight of a step: exp(-depth before it) * (1 - exp(-depth)) / depth * length.

@@ -68,7 +68,7 @@ void set_grid(Layer& layer, const scene::VoxelGrid& grid, const Layer* before) {
                                before ? before->grid.get() : nullptr);
 }
 
-// What varies, and its kernel.
+// Sets the varying part, and its kernel.
 void set_varied(Layer& layer, const Layer* before) {
   const Box box = varied_support(layer.medium->field);
   scene::match(

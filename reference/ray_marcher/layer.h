@@ -17,14 +17,15 @@ struct Layer {
   double constant = 0;   // [-] density in the whole region
   bool varies = false;   // is there anything besides the constant
   scene::Region varied;  // the varying part is zero (or negligible) outside this, or outside the medium's region
-  // What varies, laid out for the kernels; neither for a field that has no kernel and is marched by plain loops.
+  // The varying part, laid out for the kernels. Both are null for a field without kernel, which is
+  // marched by plain loops.
   std::shared_ptr<const GridField> grid;
   std::shared_ptr<const GaussianField> gaussians;
   LocalShape shape;  // the region for the kernels
   Frame shape_frame;
   double most_varied = 0;  // [-] upper bound of what varies
-  // Of all layers that vary, per unit of density, in the thickest channel [1/m]: how deep a shadow ray's steps are is
-  // judged by that, so that a medium in two halves is stepped as the whole.
+  // Sum over all layers that vary of the extinction per unit of density, in the thickest channel [1/m]. The step size
+  // of shadow rays depends on it, so that a medium in two halves is stepped like the whole.
   double thickest = 0;
 };
 

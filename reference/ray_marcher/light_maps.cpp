@@ -7,7 +7,7 @@
 namespace airlight::ray_marcher {
 namespace {
 
-// What varies of a layer, in float.
+// The varying density of a layer, in float.
 void kernel_densities(const Layer& layer, std::size_t n, const double* x, const double* y, const double* z,
                       float* density) {
   static thread_local std::vector<float> local[3];

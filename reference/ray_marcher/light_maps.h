@@ -12,7 +12,8 @@ bool needs_maps(const Plan&);
 // for threads, and whether to stop.
 void make_light_maps(Plan&, const scene::Execution&, const Plan* before = nullptr);
 
-// What varies of the media, by the kernels of the layers, which must live as long, and by the media's own functions where a layer has none.
+// The varying densities of the media, by the kernels of the layers, which must live as long; by the media's own
+// functions for layers without kernel.
 light_map::Densities densities_by_kernels(const std::vector<Layer>&, const std::vector<scene::Medium>&);
 
 // Density evaluations in a picture's maps, at most.

@@ -1,5 +1,5 @@
-// What the ray marcher is not asked to do: lengths of steps out of range, and more work or memory than anybody waits
-// for.
+// Limits of the ray marcher: it refuses steps whose length is out of range, and more work or memory than
+// a user would wait for.
 #pragma once
 #include <string>
 #include <vector>

@@ -8,7 +8,7 @@ namespace airlight::ray_marcher {
 
 namespace {
 
-// Of lamps in endless fog: the depth of the deepest, seen from the camera.
+// Optical depth from the camera to the deepest lamp in endless fog.
 double deepest_lamp(const scene::Scene& scene) {
   double deepest = 0;
   for (const scene::Medium& medium : scene.media) {

@@ -1,4 +1,4 @@
-// What a user can set on the ray marcher.
+// Settings of the ray marcher.
 #pragma once
 #include <string>
 #include <vector>
@@ -35,10 +35,10 @@ inline double deepest_shadow_step(const Options& o) {
   return o.shadow_step > 0 ? 0.5 : 1.01 * o.horizon / o.shadow_steps;
 }
 
-// Of the airlight at 64 and 32 steps, the defaults: relative L2 distance from the truth. 0.015; 0.04 where a medium is
-// so thick that steps may be divided (depth.h); 0.08 where surfaces cast shadows, whose edges fall within steps; the
-// square of a step's depth / 20 where a lamp lies deeper than 35 in endless fog. Tests hold scenes of each kind against
-// it.
+// Expected relative L2 error of the airlight with 64 and 32 steps, the defaults. 0.015; 0.04 where a
+// medium is so thick that steps may be divided (depth.h); 0.08 where surfaces cast shadows, because
+// shadow edges fall within steps; the square of a step's depth / 20 where a lamp lies deeper than 35 in
+// endless fog. Tests check the bound with scenes of each kind.
 double stated_error(const scene::Scene&);
 
 std::vector<scene::SettingSpec> option_specs();

@@ -1,4 +1,5 @@
-// What is prepared once for a scene: layers, the list of lights that each shine from one direction, and options.
+// Values that are prepared once for a scene: layers, the list of lights that each shine from one
+// direction, and options.
 #pragma once
 #include <memory>
 #include <vector>

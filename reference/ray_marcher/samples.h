@@ -49,7 +49,7 @@ struct StepArrays {
   }
 };
 
-// What reaches points from one light.
+// Light that reaches points from one lamp.
 struct Arrivals {
   std::vector<float> to_x, to_y, to_z, distance, minus, plus, strength;
   void resize(std::size_t n) {

@@ -41,7 +41,7 @@ Rgb in_scattered(const Plan& plan, std::size_t light, const std::vector<double>&
   return scattering * from.irradiance * transmittance_to_light(plan, light, x, from, counters);
 }
 
-// What a light sends to a step: as to its midpoint, but with the mean of the inverse square over the step.
+// Light that a lamp sends to a step: evaluated at the midpoint, but with the mean of the inverse square over the step.
 scene::Incident incident_on_step(const scene::Light& light, const Ray& ray, const Step& step) {
   const auto ball = scene::ball(light);
   if (!ball) return incident(light, ray.at(step.t));
@@ -52,7 +52,7 @@ scene::Incident incident_on_step(const scene::Light& light, const Ray& ray, cons
           intensity_towards(light, -to_light) * mean_inverse_square(approach(ray, ball->center), step)};
 }
 
-// The same passes with deep steps divided.
+// Divides deep steps; the passes remain.
 void divide_deep_steps(const Plan& plan, const Ray& ray, std::vector<Pass>& passes, std::vector<Step>& steps) {
   if (std::none_of(steps.begin(), steps.end(),
                    [&](const Step& step) { return may_be_deep(plan.layers, plan.options, step); }))

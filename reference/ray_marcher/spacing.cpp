@@ -66,7 +66,7 @@ double constant_rate(const std::vector<Layer>& layers, unsigned long long inside
 // Light falls little on the way to a lamp, and steps may not grow there; not worth a change where a lamp is so near.
 constexpr double deep_lamp = 4;
 
-// The same in the most extinct.
+// Extinction of the constant media of a part, in the most extinct channel.
 double greatest_rate(const std::vector<Layer>& layers, unsigned long long inside) {
   Rgb sum = Rgb::Zero();
   for (std::size_t k = 0; k < layers.size(); ++k)

@@ -51,7 +51,7 @@ struct Approach {
 Approach approach(const Ray&, const Point3& light);
 
 // Mean of 1/distance^2 to the light over a step [1/m^2], in closed form: the angle under which the light sees the step
-// over h * length. What makes the inverse square exact in a step.
+// over h * length. It makes the inverse square exact in a step.
 double mean_inverse_square(const Approach&, const Step&);
 
 // Appends the steps of the ray over [0, t_end], for `lamps`, the point and spot lights that they serve; `light`: grade

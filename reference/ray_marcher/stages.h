@@ -1,4 +1,4 @@
-// What the ray marcher does for a scene, and what it leaves out and why: on the CPU and on the GPU alike.
+// Stages of the ray marcher for a scene, and the stages that are left out and why: on the CPU and on the GPU alike.
 #pragma once
 #include <vector>
 

@@ -1,9 +1,8 @@
 // The fast path: a tile of camera rays at once, all their steps as arrays, so that the vector kernels have enough to
 // do.
 //
-// The same scheme, and the same steps, as scalar.h, in float where kernels run. Stages: rays and steps (double),
-// densities, transmittances, then per light: directions, occlusion, shadow columns, scattering; last the surfaces
-// behind.
+// Scheme and steps are those of scalar.h, with float where kernels run. Stages: rays and steps (double), densities,
+// transmittances; then for each light directions, occlusion, shadow columns, scattering; last the surfaces behind.
 #pragma once
 #include <chrono>
 
@@ -19,7 +18,7 @@ class TileMarcher {
   // Pixels of the rays, in their order. Rays near each other make the kernels more efficient.
   const std::vector<Pixel>& march(const Plan&, const std::vector<Ray>&, Counters&);
 
-  // The same, so many rays at a time: no pixel depends on it.
+  // Marches at most `at_once` rays at a time. The pixels do not depend on this number.
   std::vector<Pixel> march_in_parts(const Plan&, const std::vector<Ray>&, std::size_t at_once, Counters&);
 
  private:

@@ -21,7 +21,7 @@ class Transport {
         back_(l, obstacles, u, from.axis, dt / l.h, how.trace),
         forth_(l, obstacles, u, from.axis, -dt / l.h, how.trace) {}
 
-  // What was at the feet; with `range`, the least and greatest of the samples around them too.
+  // Carries the values at the feet; with `range`, also the least and greatest of the samples around the feet.
   void carry(const Field<Real>& source, Field<Real>& to, Range<Real>* range = nullptr) const {
     const Sampler<Real, D> samples(source);
     each([&](const Block& b) {
@@ -45,7 +45,7 @@ class Transport {
     });
   }
 
-  // The same of the values that have yet to go: the first half of BFECC.
+  // First half of BFECC: half of the change of a round trip is subtracted from the values before they are carried.
   void compensate(const Field<Real>& arrived, Field<Real>& to) const {
     const Sampler<Real, D> samples(arrived);
     each([&](const Block& b) {
@@ -53,7 +53,7 @@ class Transport {
       store(b, now + all(Real(0.5)) * (now - returned), to);
     });
   }
-  // And the second, limited as MacCormack is.
+  // Second half of BFECC, limited like MacCormack.
   void limit(const Field<Real>& arrived, const Range<Real>& range, Field<Real>& to) const {
     each([&](const Block& b) { store(b, limited(load(b, to), load(b, arrived), range, b), to); });
   }
@@ -107,7 +107,7 @@ class Transport {
     return obstacles_.any() && from_.axis == at_centers ? in_fluid(value, source, foot, b) : value;
   }
 
-  // Of the samples around a place those that are fluid: what is beyond an obstacle of one cell does not come through.
+  // Interpolates between the fluid samples around a point only, so that nothing passes an obstacle of one cell.
   V in_fluid(V value, const Field<Real>& source, const typename Sampler<Real, D>::Foot& foot, const Block& b) const {
     Real values[64], x[64], y[64], z[64];
     hn::StoreU(value, Lanes<Real>(), values);

@@ -26,7 +26,7 @@ struct Range {
   std::vector<Real> least, greatest;
 };
 
-// What corrections need beside two fields, `second` BFECC alone; of any shape at first.
+// Working memory of corrections, beside two fields; `second` is for BFECC alone. It may have any shape at first.
 template <class Real>
 struct Workspace {
   Field<Real> first, second;
@@ -34,8 +34,8 @@ struct Workspace {
   void shape_as(const Field<Real>&, Scheme);
 };
 
-// What is at each sample after a time dt: `from` and the velocity with their ghosts filled; `to` is of from's shape, and
-// its ghosts stay as they were. Feet end at walls and obstacles, and wrap where it is periodic.
+// Advects a field by a time dt. `from` and the velocity have their ghosts filled; `to` has the shape of `from`, and its
+// ghosts stay as they were. Feet end at walls and obstacles, and wrap along periodic axes.
 template <class Real>
 void advect(const Advection&, const Lattice&, const Obstacles&, const Velocity<Real>&, double dt, Quantity,
             const Field<Real>& from, Field<Real>& to, Workspace<Real>&);

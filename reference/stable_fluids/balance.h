@@ -13,15 +13,15 @@ class Balance {
  public:
   Balance(const Lattice&, const Obstacles&, const FluidParts&);
 
-  // Adds to a velocity what a force adds to a component in a step, without the part that pressure balances. What would
-  // be balanced if no side were open, and no way led around a periodic axis, is kept for `add_deferred`. Values of
-  // `change` on walls and beside solid cells are not read.
+  // Adds a force's change of a component in a step to the velocity, without the part that pressure balances. The part
+  // that pressure would balance if no side were open, and if no way led around a periodic axis, is kept for
+  // `add_deferred`. Values of `change` on walls and beside solid cells are not read.
   void add(const Field<Real>& change, Field<Real>& component);
   // After advection: a velocity that is uniform along the planes must not be advected before it has met the obstacles.
   void add_deferred(Velocity<Real>&);
 
  private:
-  // What becomes of the profile along an axis in a part of the fluid.
+  // Treatment of the profile along an axis in a part of the fluid.
   enum class Fate { balanced, around, deferred };  // around: all but its mean is balanced
   template <class Body>
   void each_face(const Field<Real>& component, int plane, const Body&) const;  // body(part, i, j, k)

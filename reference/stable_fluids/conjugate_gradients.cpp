@@ -148,7 +148,7 @@ void ConjugateGradients<Real>::apply(const std::vector<Real>& x, std::vector<Rea
         const int at = a == 0 ? i : row[a], n = l_.n[a];
         if (n == 1) continue;
         const std::ptrdiff_t around = (n - 1) * step[a];
-        // What is solid has x = 0.
+        // Solid cells have x = 0.
         if (at > 0)
           sum -= x[cell - step[a]];
         else if (l_.periodic(a))

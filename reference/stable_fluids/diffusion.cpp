@@ -14,7 +14,7 @@ Diffusion<Real>::Diffusion(const Lattice& l, const Obstacles& obstacles, int axi
 
 namespace {
 
-// What walls add to the samples beside them: the transforms take all mirrored values as 0.
+// Adds the contribution of walls to the samples beside them: the transforms assume that all mirrored values are 0.
 template <class Real>
 void add_walls(const Lattice& l, Quantity quantity, double amount, const Field<Real>& field, const Size& begin,
                const Size& size, std::vector<Real>& values) {

@@ -9,7 +9,7 @@ namespace airlight::stable_fluids {
 template <class Real>
 class Diffusion {
  public:
-  // Of a component of the velocity (its axis) or of what is at centres.
+  // axis_of_field: the axis of a velocity component, or at_centers for fields at cell centres.
   Diffusion(const Lattice&, const Obstacles&, int axis_of_field, double tolerance, int most_iterations);
   // By amount = dt times the coefficient [m^2]. Ghosts are filled after. Throws Error.
   int operator()(Field<Real>&, Quantity, double amount);

@@ -70,7 +70,8 @@ bool on_side(const Field<Real>& field, int axis, int i, const Lattice& l) {
   return field.axis == axis && !l.periodic(axis) && (i == 0 || i == l.n[axis]);
 }
 
-// What a field does beyond a side: mirrored (its slope is 0 there), or mirrored with the sign turned around a value.
+// Continuation of a field beyond a side: mirrored (its slope is 0 there), or mirrored with the sign
+// turned around a value.
 enum class Beyond { periodic, even, odd };
 Beyond beyond(const Lattice&, int axis_of_field, int axis, int side);
 

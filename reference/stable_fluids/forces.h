@@ -1,4 +1,4 @@
-// What accelerates the fluid, and what comes into it.
+// Forces on the fluid, and sources.
 #pragma once
 #include "reference/stable_fluids/obstacles.h"
 
@@ -23,7 +23,7 @@ void add_confinement(double epsilon, const Lattice&, const Obstacles&, double dt
 template <class Real>
 std::array<Real, 3> vorticity(const Velocity<Real>&, const Lattice&, int i, int j, int k);
 
-// What sources add in a step, and what they hold.
+// Adds the contribution of sources in a step, and sets the values that sources hold.
 template <class Real>
 void add_sources(const scene::FlowProblem&, const Lattice&, double time, double dt, Quantity, Field<Real>&);
 template <class Real>

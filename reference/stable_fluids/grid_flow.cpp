@@ -20,7 +20,7 @@
 namespace airlight::stable_fluids {
 namespace {
 
-// What the flow carries: density or temperature.
+// A quantity that the flow carries: density or temperature.
 template <class Real>
 struct Carried {
   Quantity quantity;
@@ -62,7 +62,7 @@ class GridFlow : public scene::Flow {
 
   void step(double dt) override {
     arena_.execute([&] { advance(dt); });
-    // Of equal steps a product, not a sum that drifts.
+    // Time after equal steps is computed as a product, because a sum would drift.
     if (dt != last_step_) {
       since_ = time_;
       equal_steps_ = 0;
@@ -184,7 +184,7 @@ class GridFlow : public scene::Flow {
     iterations_ += report.iterations;
     residual_ = std::max(residual_, report.residual);
     settle();
-    // What rounding in float leaves grows with the cells along an axis; of what is left little is left.
+    // The residual divergence by rounding in float grows with the cells along an axis. A second projection reduces it.
     constexpr double most = 1e-5;
     if (sizeof(Real) == sizeof(double) || plan_.pressure != PressureSolver::transforms) return;
     if (greatest_divergence(u_, l_, obstacles_) <= most * greatest_speed(u_)) return;

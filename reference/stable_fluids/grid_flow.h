@@ -11,7 +11,7 @@ struct Plan {
   Advection advection;
   PressureSolver pressure = PressureSolver::transforms;
   double tolerance = 1e-6;  // of conjugate gradients
-  int iterations = 2000;    // likewise
+  int iterations = 2000;    // most iterations of conjugate gradients
   bool project_twice = false;
   int threads = 0;
 };

@@ -21,8 +21,8 @@ Real divergence_at(const Velocity<Real>& u, const Lattice& l, int i, int j, int 
   return sum / Real(l.h);
 }
 
-// What walls let in and out must be balanced in every part that has no open side: no velocity without divergence exists
-// otherwise.
+// Inflow and outflow through walls must be balanced in every part without an open side: otherwise no
+// velocity without divergence exists.
 void require_balance(const Lattice& l, const Obstacles& obstacles, const FluidParts& parts) {
   std::vector<double> net(parts.open.size(), 0.0), gross(parts.open.size(), 0.0);
   for (int a = 0; a < l.dimensions; ++a)

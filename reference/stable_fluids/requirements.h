@@ -1,4 +1,4 @@
-// What a problem must have for a grid, looked at before anything is allocated. All throw Error.
+// Requirements of a problem for a grid, checked before anything is allocated. All functions throw Error.
 #pragma once
 #include "reference/stable_fluids/field.h"
 

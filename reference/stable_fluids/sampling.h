@@ -1,5 +1,6 @@
-// Reading a field between its samples, and finding where what arrives at a place came from, for as many places at once
-// as a vector has lanes. For kernels: no checks. The same bits for any width: no operation is fused.
+// Interpolation of a field between its samples, and back-tracing: where the content of a point came from. Works on as
+// many points at once as a vector has lanes. Kernels do not check arguments. Results are bitwise equal for any vector
+// width: no operation is fused.
 #pragma once
 #include <hwy/highway.h>
 
@@ -173,7 +174,7 @@ class Tracer {
         cells_(all(Real(cells))),
         order_(order) {}
 
-  // Of the samples from (i, j, k) along x, which are at p.
+  // Feet of the paths that end at the samples from (i, j, k) along x, at positions p.
   Places<Real> feet(int i, int j, int k, const Places<Real>& p) const {
     const Places<Real> first = way_at_samples(i, j, k);
     Places<Real> total = first;

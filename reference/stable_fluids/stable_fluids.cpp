@@ -20,7 +20,7 @@ constexpr double most_steps = 1e8;  // of a frame
 struct Options {
   Plan plan;
   double dt = 0;       // [s], the longest step; 0: a frame
-  double courant = 0;  // the same in cells that 1 m/s crosses
+  double courant = 0;  // the longest step, in cells that 1 m/s crosses
   std::optional<PressureSolver> pressure;
   bool in_double = false;
 };

@@ -5,7 +5,7 @@
 
 namespace airlight::stable_fluids {
 
-// `density` may be null. Without cfl. The same for any number of threads.
+// `density` may be null. `cfl` is not set. Results do not depend on the number of threads.
 template <class Real>
 scene::Totals totals_of(const Velocity<Real>&, const Field<Real>* density, const Lattice&, const Obstacles&);
 

@@ -1,4 +1,4 @@
-// What some editors put before a text in UTF-8: three bytes that nobody sees.
+// The byte order mark of UTF-8: three invisible bytes that some editors put before a text.
 #pragma once
 #include <string_view>
 

@@ -1,4 +1,4 @@
-// What everything has that a user chooses by name: renderers, solvers, probes.
+// Base of everything that a user chooses by name: renderers, solvers, probes.
 #pragma once
 #include <string>
 #include <vector>

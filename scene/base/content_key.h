@@ -8,7 +8,7 @@ namespace airlight {
 
 std::string content_key(std::string_view bytes);
 
-// Of several parts; their borders count.
+// Key of several parts. The borders between parts count.
 std::string content_key(const std::vector<std::string>& parts);
 
 }  // namespace airlight

@@ -19,7 +19,7 @@ std::string bytes_of(const fs::path& path) {
 
 fs::path checksum_of(fs::path file) { return file += ".xxh128"; }
 
-// As xxh128sum prints it. The name is that of the entry in its store: with its checksum, too, no other entry stands for it.
+// A line in the format of xxh128sum. It contains the name of the entry, so that no other entry passes under this name.
 std::string checksum_line(std::string_view bytes, const std::string& name) {
   return fmt::format("{}  {}\n", content_key(bytes), name);
 }

@@ -31,8 +31,8 @@ struct Kinds<std::variant<Kind...>> {
   static std::vector<std::variant<Kind...>> all() { return {std::variant<Kind...>(Kind{})...}; }
 };
 
-// What a renderer that knows no other kinds than these says of another: "grid, expected homogeneous or gaussians".
-// Empty if it knows this one. `name` names a kind.
+// The reason of a renderer that supports only these kinds: "grid, expected homogeneous or gaussians". Empty if it
+// supports this one. `name` names a kind.
 template <class... Known, class Variant>
 std::string unknown_kind(const Variant& value, std::string (*name)(const Variant&)) {
   if ((std::holds_alternative<Known>(value) || ...)) return "";

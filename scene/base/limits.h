@@ -1,5 +1,5 @@
-// What a command may take of the machine. Whoever begins work that can be large estimates it first, and where that is too much one line
-// says so instead of a machine that swaps or a user who waits.
+// Limits on the time and memory that a command may use. Work that can be large is estimated before it begins. Where the
+// estimate is above the limit, a message of one line appears, instead of a machine that swaps or a user who waits.
 #pragma once
 #include <functional>
 #include <string>

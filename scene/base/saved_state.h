@@ -10,19 +10,19 @@ namespace airlight::scene {
 
 class StateWriter {
  public:
-  // What follows is about as long as said, so that it is not copied as it grows.
+  // `bytes` is the expected size of the state: memory is reserved for it, so that nothing is copied as the text grows.
   explicit StateWriter(const std::string& shape, std::size_t bytes = 0) {
     bytes_.reserve(shape.size() + bytes + 1024);  // and what a file begins and ends with
     bytes_ += shape;
     bytes_ += '\n';
   }
   void number(double value) { append(&value, sizeof value); }
-  // As many as the reader will expect.
+  // Writes the values without their count, which the reader must know.
   template <class Numbers>
   void values(const Numbers& v) {
     append(v.data(), std::size_t(v.size()) * sizeof(*v.data()));
   }
-  // With their number.
+  // Writes the count, then the values.
   void array(const Eigen::VectorXd& a) {
     number(double(a.size()));
     values(a);

@@ -129,7 +129,7 @@ Unread why_unread(const std::vector<SettingSpec>& specs, const SettingSpec& spec
   return result;
 }
 
-// As the shortest text that reads back as the same number: 1e-4, not 1e-04.
+// Shortest text that reads back as this number: 1e-4, not 1e-04.
 std::string text_of(double value) {
   std::array<char, 32> room;
   std::string text(room.data(), std::to_chars(room.data(), room.data() + room.size(), value).ptr);

@@ -55,7 +55,7 @@ inline SettingSpec choice_setting(std::string name, std::string fallback, std::v
   return {std::move(name), SettingSpec::Type::choice, std::move(fallback), std::move(doc), 0, 0, std::move(choices)};
 }
 
-// What a choice may say, and what each means.
+// Accepted texts of a choice, and the value of each.
 template <class Value>
 using Choices = std::vector<std::pair<std::string, Value>>;
 
@@ -91,7 +91,7 @@ class Settings {
     throw std::logic_error("the choices of " + name + " are others");
   }
 
-  // What was given of these specs, without defaults: the settings of a renderer among those of a probe.
+  // The values given for these specs, without defaults: the settings of a renderer among those of a probe.
   std::map<std::string, std::string> given(const std::vector<SettingSpec>&) const;
 
   // "name=value name=value ..." of all settings in the order of the specs: part of cache keys and metadata.

@@ -6,8 +6,8 @@
 
 namespace airlight::scene {
 
-// As many as asked for, 0 meaning all, but no more than the machine has: TBB would give none of those, and say so on
-// standard error.
+// Number of threads to use: 0 asks for all, and no more than the machine has are used. With more than that, TBB would
+// give none of them and print a warning on standard error.
 inline int threads_for(int asked) {
   const int all = tbb::info::default_concurrency();
   return asked > 0 ? std::min(asked, all) : all;

@@ -1,4 +1,4 @@
-// What a fit of Gaussians makes small: sum over voxels of E^2, E = sum w B - D, and its gradient. Zhou et al. 2008, Eq. 9.
+// Objective of a fit of Gaussians: sum over voxels of E^2, E = sum w B - D, and its gradient. Zhou et al. 2008, Eq. 9.
 //
 // All in samples of the grid: sample (i, j, k) sits at (i, j, k), widths are counted in voxels.
 #pragma once
@@ -8,7 +8,7 @@
 
 namespace airlight::scene {
 
-// What differs between a fit and its grid. With E = fit - density, over all voxels.
+// Differences between a fit and its grid. E = fit - density, over all voxels.
 struct FitErrors {
   double squared_ratio = 0;  // sum E^2 / sum D^2: the publication's "relative error"; 0 for an empty grid
   double relative_l2 = 0;    // its root
@@ -16,8 +16,8 @@ struct FitErrors {
   double rms = 0, rms_filled = 0, max = 0, max_filled = 0;
 };
 
-// T: float for fits, double where digits count. The same bits for any number of threads: a slice adds the Gaussians in their order, a
-// Gaussian's gradient is one thread's, sums over slices run in theirs.
+// T: float for fits, double where digits count. Results are bitwise equal for any number of threads: a slice adds the
+// Gaussians in their order, one thread computes a Gaussian's gradient, and sums over slices run in order.
 template <class T>
 class FitObjective {
  public:

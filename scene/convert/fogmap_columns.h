@@ -15,17 +15,17 @@ struct GroundPixels {
   double x0 = 0, z0 = 0;
 };
 
-// As many square pixels as cover the field's box, `longer` of them along its longer side. Throws Error for a field without an end.
+// Square pixels that cover the field's box, `longer` of them along its longer side. Throws Error for an infinite field.
 GroundPixels ground_pixels(const DensityField&, int longer);
 
 // The columns over each pixel [m]: means over samples^2 upright rays. Throws Error for a field without an end in height.
 std::vector<double> column_densities(const DensityField&, const GroundPixels&, int samples);
 
 struct ColumnFogmap {
-  Fogmap map;                // the same at all heights: its medium's region ends it
+  Fogmap map;                // equal at all heights: its medium's region ends it
   Interval heights;          // of the field's box [m]; columns are spread over them
   double column_error = 0;   // of the columns, relative L2, over upright rays between those that made the map
-  double density_error = 0;  // of the density, relative L2, over a lattice in the box: what losing the height costs
+  double density_error = 0;  // of the density, relative L2, over a lattice in the box: the cost of losing the height
   double column_ratio = 0;   // sum of the map's columns over that of the field's
 };
 // Pixels as coefficients of splines of that degree (0 to 3), centred on them.

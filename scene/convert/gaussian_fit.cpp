@@ -97,7 +97,7 @@ class Frame {
       int moved = 0;
       if (value > wanted && round + 1 < options_.later_rounds) {
         if (inserted_ == 0) insert(options_.inserted);
-        // Whoever is sent away becomes another one.
+        // A Gaussian that is moved far away gets a new id.
         const std::vector<Gaussian> at = gaussians_;
         if (options_.resent) moved = send_least(10);
         for (std::size_t i = 0; moved > 0 && i < at.size(); ++i)

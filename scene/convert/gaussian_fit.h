@@ -33,7 +33,8 @@ const Choices<Teleport>& teleports();
 
 struct FitOptions {
   int gaussians = 1000;  // 1 to most_fit_gaussians; fewer where fewer voxels are filled
-  // Of lengths [m]; 0: the cube root of the volume of the grid's box, voxels counted as cubes, whatever its sides.
+  // Unit of lengths [m]. 0: cube root of the volume of the grid's box, with voxels counted as cubes for
+  // any side lengths.
   double unit = 0;
   // In units; the lower one at least so many voxels, the upper at least twice the lower.
   Interval widths = {0.015, 0.09};
@@ -43,7 +44,7 @@ struct FitOptions {
   // Rounds of `iterations`, each followed by teleportation, until one lowers the objective by less than `tolerance` of it.
   int rounds = 12, iterations = 5;
   double tolerance = 2e-3;
-  // The same of later frames, which begin near where they end.
+  // Rounds and tolerance for later frames, which start close to their solution.
   int later_rounds = 6;
   double later_tolerance = 1e-2;
   Teleport teleport = Teleport::greatest;

@@ -11,7 +11,7 @@ namespace airlight::scene {
 
 struct ProjectionOptions {
   TensorShape shape = {12, 12, 12};  // coefficients along the axes, 1 to LegendreBox::most
-  std::optional<Box> box;            // that of the medium by default
+  std::optional<Box> box;            // by default the medium's box
   bool lanczos = true;               // coefficient (i, j, k) times sinc(i/n) sinc(j/n) sinc(k/n)
   // r <- mean + theta (r - mean) with the greatest theta that leaves r positive (a thousandth of the mean at least): keeps the mass.
   bool limiter = true;

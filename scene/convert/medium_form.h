@@ -31,7 +31,7 @@ MediumConversion read_conversion(const std::map<std::string, std::string>& given
 // "to=gaussians count=600"; what is as by default and has no size is left out.
 std::string canonical(const MediumConversion&);
 
-// What became of one medium.
+// Result of the conversion of one medium.
 struct ConvertedMedium {
   std::string medium;        // its label
   std::size_t numbers = 0;   // that say the density: voxels, 5 a Gaussian, coefficients, pixels

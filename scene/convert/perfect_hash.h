@@ -42,8 +42,8 @@ struct PerfectHash {
   int value_by_tag(const Eigen::Vector3i& position) const;
   int value_by_domain(const Eigen::Vector3i& position) const;
 
-  // What a device has to hold. Offsets of 3 bytes, of 4 where m passes 256. With tags a slot is a word of value and tag where the tag fits
-  // 24 bits, else 5 bytes; with domain bits it is a byte.
+  // Size on a device. Offsets take 3 bytes, or 4 where m is above 256. With tags a slot is a word of value and tag if
+  // the tag fits 24 bits, else 5 bytes; with domain bits it is a byte.
   std::size_t bytes_with_tags() const;
   std::size_t bytes_with_domain() const;
 };

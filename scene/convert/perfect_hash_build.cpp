@@ -135,7 +135,7 @@ class Construction {
   }
 
   bool find_offset(const Bucket& b, const std::vector<std::uint32_t>& offsets) {
-    // Those of the buckets beside it: what lies together is then read together.
+    // First try the offsets of the neighbouring buckets: voxels that lie together are then read together.
     const int r = r_;
     const Vector3i at(int(b.index % r), int(b.index / r % r), int(b.index / r / r));
     for (int axis = 0; axis < 3; ++axis)

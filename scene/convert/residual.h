@@ -1,4 +1,4 @@
-// What a sum of Gaussians leaves of a voxel grid, R = D - D~ at the samples, in 8 bits a sample.
+// Difference between a voxel grid and a sum of Gaussians, R = D - D~ at the samples, in 8 bits a sample.
 // Zhou et al. 2008, section 5.2: level = round(R / step), |level| <= 127, small levels dropped.
 #pragma once
 #include <cstdint>
@@ -16,8 +16,8 @@ struct QuantisationOptions {
   int threshold = 0;  // levels of this size or less become 0; 0 to 126
   // Density of one level [-], > 0; what passes 127 of them is cut off. By default the largest |R| is 127 levels.
   std::optional<double> step;
-  // Of residual_of(): samples without density stay without, whatever the threshold: there the level is rounded down. Otherwise Gaussians
-  // leave up to half a level, or the threshold, in empty space.
+  // Used by residual_of(): samples without density get none, for any threshold, because levels are rounded down there.
+  // Without it, Gaussians leave up to half a level, or the threshold, in empty space.
   bool keep_empty = false;
 };
 

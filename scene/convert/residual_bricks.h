@@ -16,7 +16,7 @@ struct ResidualBricks {
   std::vector<std::int8_t> values;                   // edge^3 a brick, x fastest; 0 beyond the size
 
   std::size_t kept() const { return values.size() / (std::size_t(edge) * edge * edge); }
-  // What a device has to hold: the index of 4 bytes, the values.
+  // Size on a device: the index of 4 bytes, and the values.
   std::size_t bytes() const { return 4 * index.size() + values.size(); }
   // 0 outside.
   int level(const Eigen::Vector3i& sample) const;

@@ -45,7 +45,7 @@ bool hexadecimal(const char* key) {
   return true;
 }
 
-// Of an empty grid: all 0.
+// Checks the ranges of a header. An empty grid has size 0 on all axes.
 void check(const Fixed& f) {
   double samples = 1;
   bool positive = true, none = true;

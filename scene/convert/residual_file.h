@@ -12,7 +12,7 @@ std::string residual_bytes(const Residual&);
 // residual has. Every length is checked before anything is made of it.
 Residual residual_from_bytes(const std::string& bytes);
 
-// The same from and to a file (atomically); the Error begins with its path.
+// Read and write a residual as a file (atomically). The text of an Error begins with the path.
 Residual read_residual(const std::string& path);
 void write_residual(const std::string& path, const Residual&);
 

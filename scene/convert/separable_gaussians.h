@@ -149,8 +149,8 @@ class Tables {
     }
   }
 
-  // The same for a loop over all vectors of the Gaussian's tables, which is faster where many rows are short: a sample belongs to the
-  // ball where dx^2 < rest, compared in T. body(y, z, rest, factor, dy, dz).
+  // A variant of rows() for loops over whole vectors of the Gaussian's tables, faster where many rows are short. A
+  // sample belongs to the ball where dx^2 < rest, compared in T. Calls body(y, z, rest, factor, dy, dz).
   template <class Body>
   void all_rows(const Part& p, int z0, int z1, Body&& body) const {
     if (p.empty()) return;

@@ -7,8 +7,8 @@
 
 namespace airlight::scene {
 
-// As write_exr (film.h), the layers in `halves` as 16-bit floats. Throws Error where such a float does not hold a value
-// exactly.
+// A variant of write_exr (film.h) that stores the layers in `halves` as 16-bit floats. Throws Error where a 16-bit
+// float does not hold a value exactly.
 void write_exr_with_halves(const std::string& path, const Film&, const std::set<std::string>& halves);
 
 }  // namespace airlight::scene

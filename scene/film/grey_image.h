@@ -17,8 +17,8 @@ struct GreyImage {
 // file, damaged, colours that differ, NaN or infinity, more than most_pixels.
 GreyImage read_grey_image(const std::string& path, const std::string& channel, std::size_t most_pixels);
 
-// As the name says: a PNG of 16 bits, values in [0, 1] rounded to v / 65535 (throws Error for others), or an EXR of floats in
-// channel Y. Atomically.
+// Writes the format that the file name asks for, atomically. PNG: 16 bits, values in [0, 1] rounded to v / 65535;
+// throws Error for other values. EXR: floats in channel Y.
 void write_grey_image(const std::string& path, const GreyImage&);
 
 }  // namespace airlight::scene

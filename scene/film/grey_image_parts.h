@@ -1,4 +1,4 @@
-// What readers of grey images share.
+// Shared parts of the readers of grey images.
 #pragma once
 #include "scene/film/grey_image.h"
 

@@ -18,7 +18,8 @@
 namespace airlight::scene {
 namespace {
 
-// What libpng's callbacks share: bytes of the file, and its last words. They leave by longjmp, past no destructor.
+// State shared by libpng's callbacks: bytes of the file, and the last message. Callbacks leave by
+// longjmp, past no destructor.
 struct Stream {
   const std::string* in = nullptr;
   std::size_t at = 0;

@@ -26,7 +26,7 @@ struct Totals {
   Point3 center_of_mass = Point3::Zero();  // [m]; of the box where there is no mass
 };
 
-// What a flow has at one time, on a grid: what a file of OpenVDB holds (write_frame).
+// State of a flow at one time, on a grid: content of an OpenVDB file (write_frame).
 struct Frame {
   Eigen::Vector3i size = Eigen::Vector3i::Zero();  // cells
   double cell = 1;                                 // [m]

@@ -37,7 +37,7 @@ FlowParticles::FlowParticles(const FlowProblem& problem)
 }
 
 void FlowParticles::step(const Flow& before, const Flow& after, double dt, const Execution& execution) {
-  // What a device holds comes down on this thread, not in a task.
+  // Downloads the velocities from a device on this thread, not in a task.
   for (const Flow* flow : {&before, &after}) flow->velocity(box_.center());
   tbb::task_arena arena(threads_for(execution.threads));
   for (std::size_t s = 0; s < sets_.size(); ++s)

@@ -7,8 +7,8 @@
 
 namespace airlight::scene {
 
-// dx/dt = u(x, t) + fall, by the classical Runge-Kutta method of fourth order, u linear in time over a step. What a particle does depends
-// on the flow, its set and its number alone: threads and order do not matter.
+// dx/dt = u(x, t) + fall, by the classical Runge-Kutta method of fourth order, u linear in time over a step. A
+// particle's path depends on the flow, its set and its number alone: threads and order do not matter.
 class FlowParticles {
  public:
   // At their first places. Throws Error (the problem's file) where a region has no room for them.
@@ -24,7 +24,7 @@ class FlowParticles {
 
   // By set, as in the problem.
   const std::vector<std::vector<Point3>>& positions() const { return now().positions; }
-  // As scenes read them: a row of set and place for each, exact.
+  // The text that scenes read: one row with set and position for each particle, exact.
   std::string csv() const;
 
   // All that the next step depends on, and back. Throws Error.

@@ -1,10 +1,10 @@
-// What flows: an incompressible fluid of constant density in a box, and what it carries along.
+// A flow problem: an incompressible fluid of constant density in a box, and the quantities that it carries along.
 //
 //   u_t = -(u.grad)u - grad p + viscosity lap u + f,   div u = 0
 //   d_t = -u.grad d + diffusivity lap d - decay d + sources,  and the same for the temperature
 //
-// f is what buoyancy, confinement of vorticity and forces accelerate [m/s^2]; p is pressure over density [m^2/s^2].
-// `density` is that of smoke [-], as media of scenes have it; `temperature` the excess over what is around [K].
+// f is the acceleration by buoyancy, confinement of vorticity and forces [m/s^2]; p is pressure over density [m^2/s^2].
+// `density` is that of smoke [-], as in the media of scenes; `temperature` is the excess over the surroundings [K].
 #pragma once
 #include <array>
 #include <cmath>
@@ -39,7 +39,7 @@ struct Side {
 };
 std::string side_name(Side::Kind);
 
-// How the velocity begins. What is not periodic is made divergence-free by the solver's first projection.
+// Initial velocity. An aperiodic velocity is made divergence-free by the solver's first projection.
 struct AtRest {};
 struct TaylorGreen {  // u = speed sin kx cos ky, v = -speed cos kx sin ky, k = 2 pi waves / size, from the low corner
   double speed = 1;   // [m/s]
@@ -154,7 +154,7 @@ FlowProblem parse_flow(const std::string& text, const std::string& name, const s
 // The hash of its values; its name, and how they are written, do not count.
 std::string content_hash(const FlowProblem&);
 
-// The same problem with that one of its densities alone, as the first one: 0 the first, k the k-th of `densities`.
+// This problem with a single density, stored as the first one: `which` = 0 keeps the first, k the k-th of `densities`.
 FlowProblem with_density(const FlowProblem&, int which);
 // "density" for the first, else the name.
 std::string density_name(const FlowProblem&, int which);

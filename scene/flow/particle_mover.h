@@ -1,4 +1,4 @@
-// Who moves the particles of a flow where the flow itself lies: on a device.
+// Interface to move the particles of a flow on the device where the flow is computed.
 #pragma once
 #include <vector>
 
@@ -6,7 +6,7 @@
 
 namespace airlight::scene {
 
-// Of every particle, by set as in the problem.
+// State of all particles, ordered by set as in the problem.
 struct ParticlePlaces {
   std::vector<std::vector<Point3>> positions;  // [m]
   std::vector<std::vector<double>> times;      // how often it has been drawn anew

@@ -18,8 +18,9 @@ struct Particles {
   double angle = 0;               // that a sheet has turned about an axis of its own [rad]
 };
 
-// Of as many pixels as the film: a particle covers the pixels whose centres' rays meet it, and always the one that its middle lies in, so
-// that none is lost between them. Where several do, the nearest is seen.
+// Draws particles into a backdrop of the film's size. A particle covers the pixels whose centre rays
+// meet it, and always the pixel that contains its middle, so that none is lost between pixels. The
+// nearest particle of a pixel is seen.
 Backdrop draw(const Particles&, const Camera&, int width, int height);
 
 }  // namespace airlight::scene

@@ -14,7 +14,7 @@ namespace {
 // direction times its length: 1.7e-7 together.
 constexpr double widening = 1e-6;
 
-// What the callbacks see: one traversal.
+// State of one traversal, for the callbacks.
 struct Traversal : RTCIntersectContext {
   CandidateVisitor* visitor;
   double start;  // t where the float ray begins

@@ -30,8 +30,8 @@ class CandidateTree {
 
   // Visits at least every box that the ray meets in 0 < t < tmax, each at most once, in no order. Thread safe.
   void visit(const Ray&, double tmax, CandidateVisitor&) const;
-  // The same for who ends the visit at the first find: a traversal that does not sort. The visitor's answers count only
-  // where they are negative.
+  // Any-hit traversal: visits nodes in no particular order and stops at the first hit. Only negative
+  // answers of the visitor count.
   void visit_until(const Ray&, double tmax, CandidateVisitor&) const;
 
  private:

@@ -70,7 +70,8 @@ int cross_sphere(const Ray& ray, const Sphere& sphere, std::array<Crossing, 2>& 
   const double passing = (offset - along * ray.direction).norm();
   if (!(passing < r)) return 0;  // a tangent does not cross
   const double half_chord = std::sqrt((r - passing) * (r + passing));
-  // Of the two roots along -+ half_chord one may cancel; their product is the power of the origin.
+  // One of the two roots along -+ half_chord can cancel. Their product is the power of the origin, which gives the
+  // other root without cancellation.
   const double distance = offset.norm();
   const double power = (distance - r) * (distance + r);
   const double far = along >= 0 ? along + half_chord : along - half_chord;

@@ -11,7 +11,8 @@
 namespace airlight::scene {
 namespace {
 
-// What does not change the triangles. Curves and surfaces (curv, surf, ...) are not here: they would be lost silently.
+// Statements that do not change the triangles. Curves and surfaces (curv, surf, ...) are not here: they
+// would be lost silently.
 constexpr std::array<std::string_view, 18> harmless = {
     "vt",     "vn",     "vp",     "l",      "p",     "o",        "g",        "s",   "mg",
     "usemtl", "mtllib", "usemap", "maplib", "bevel", "c_interp", "d_interp", "lod", "shadow_obj"};

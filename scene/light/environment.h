@@ -59,8 +59,8 @@ struct EnvironmentValue {
 };
 EnvironmentValue evaluate_environment(const EnvironmentLight&, const Vec3& w);
 
-// Projection on real spherical harmonics of `order` bands (order^2 coefficients) over world directions; relative error below 1e-12. Of a
-// map the bilinear interpolation is projected.
+// Projection on real spherical harmonics of `order` bands (order^2 coefficients) over world directions; relative error
+// below 1e-12. For a map, its bilinear interpolation is projected.
 std::vector<Rgb> project_environment(const EnvironmentLight&, int order);
 
 // Integral of the luminance over the sphere [W/m^2], exact for the bilinear map.

@@ -24,7 +24,7 @@ class LatLongDensity {
   double pdf(const Vec3& direction) const {
     return pdf(find_cell(to_lat_long(direction), width_, height_), direction[1]);
   }
-  // The same, where the direction's cell and the cosine of its polar angle are known.
+  // Density for a direction whose cell and cosine of the polar angle are known.
   double pdf(const LatLongCell&, double y) const;
   // The colours that came with the values, bilinear. They lie beside the values in memory: a large map is nowhere near
   // the processor, and whoever samples it asks for both.

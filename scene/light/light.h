@@ -49,7 +49,7 @@ std::string unknown_light(const std::vector<Light>& lights, std::size_t i) {
   return other.empty() ? "" : fmt::format("light {} is {}", i, other);
 }
 
-// What a delta light sends to a point in vacuum.
+// Light that a delta light sends to a point in vacuum.
 struct Incident {
   Vec3 to_light;    // unit
   double distance;  // [m], infinite for a directional light

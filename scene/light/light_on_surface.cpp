@@ -112,7 +112,8 @@ void move_lights_off_surfaces(Scene& scene) {
   for (std::size_t l = 0; l < scene.lights.size(); ++l) {
     const auto own = ball(scene.lights[l]);
     if (!own) continue;
-    // Of what is seen: a lamp in front of a planet does not lie on it. Places of the whole are rounded to 1e-16 of it.
+    // `there` is the size of what is seen: a lamp in front of a planet does not lie on the planet. Coordinates of the
+    // whole scene are rounded to 1e-16 of its size.
     const double seen = (own->center - scene.camera.position).stableNorm();
     const double there = std::max(finite > 0 ? std::min(finite, seen) : seen, 1e-9 * finite);
     const Vec3 shift = shift_off(scene, own->center, on_surface, there, fmt::format("light {}", l));

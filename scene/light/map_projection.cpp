@@ -59,7 +59,7 @@ std::vector<double> row_weights(int order, int width, int height) {
         }
     }
   }
-  // What a hat along a row, a texel wide, leaves of frequency m.
+  // Factor on frequency m by linear interpolation along a row (a hat, one texel wide).
   for (int l = 0; l < order; ++l)
     for (int m = 0; m <= l; ++m) {
       const double half = m * pi / width, shrunk = m > 0 ? std::sin(half) / half : 1;

@@ -9,8 +9,9 @@ namespace airlight::scene {
 // A pair (l, m), 0 <= m <= l < order, stands at l (l + 1) / 2 + m.
 inline int pair_count(int order) { return order * (order + 1) / 2; }
 
-// What a row's Fourier sum of frequency m, over its texels at azimuths 2 pi (i + 1/2) / width, adds to the coefficients of a pair: by pair,
-// then by row. Rows are linear in the angle from centre to centre and level in the caps; columns are linear, too.
+// Contribution of a row's Fourier sum of frequency m, over its texels at azimuths 2 pi (i + 1/2) / width, to the
+// coefficients of a pair: by pair, then by row. Rows are linear in the angle from centre to centre and constant in the
+// caps; columns are linear, too.
 std::vector<double> row_weights(int order, int width, int height);
 
 // The projected map about its own pole, from three sums with the cosine and three with the sine for each pair.

@@ -1,4 +1,4 @@
-// Which lights the media of a scene scatter. What methods do for light in the air is left out for the others.
+// Which lights the media of a scene scatter. Methods skip work on light in the air for all other lights.
 #pragma once
 #include <string>
 #include <vector>

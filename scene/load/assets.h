@@ -9,7 +9,7 @@ namespace airlight::scene::load {
 
 // The path of the file that `key` names. Throws Error (position, the places looked at) if it is in neither.
 std::string find_asset(const TableReader&, const std::string& key, const std::string& folder);
-// Of the file `name`, which comes from `key`.
+// The path of the file `name`, which the key `key` gave.
 std::string find_asset(const TableReader&, const std::string& key, const std::string& name, const std::string& folder);
 
 // The name that `key` gives for the table's `frame` where it is that of a sequence: # stand for its digits, leading zeros included. Throws

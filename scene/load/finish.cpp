@@ -15,9 +15,9 @@ namespace {
 
 using load::ContentHash;
 
-// Names, file names and the order of keys do not change the picture and are left out. What one kind does not use (the
-// height of a perspective camera) is left out too. Every structure is taken apart into all its members: one that is added
-// later does not compile before this file says what it means for the hash.
+// Names, file names and the order of keys do not change the picture and are not hashed. Members that a kind does not
+// use (the height of a perspective camera) are not hashed either. Every structure is taken apart into all its members.
+// A member that is added later therefore does not compile before this file says what it means for the hash.
 void add(ContentHash& hash, const Camera& camera) {
   const auto& [kind, position, forward, right, up, vertical_fov, height] = camera;
   const bool perspective = kind == Camera::Kind::perspective;

@@ -1,4 +1,4 @@
-// What hashes of scenes and of flows have in common: parts, by their values.
+// Common parts of the hashes of scenes and of flows, hashed by their values.
 #pragma once
 #include "scene/geometry/surface.h"
 #include "scene/load/content_hash.h"

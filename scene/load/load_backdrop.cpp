@@ -34,8 +34,8 @@ DepthImage read_depth(const TableReader& reader, const std::string& folder) {
   return read<DepthImage>(reader, key, folder, [&](const auto& path) { return read_depth_image(path, channel); });
 }
 
-// What a stereo pair does not know (infinite, or no number) lies behind what is known: of the nearest known pixels on the row the one
-// that is farther away; a row without any has no end.
+// Fills pixels that a stereo pair does not know (infinite, or no number) with the farther one of the nearest known
+// pixels of the row. A row without known pixels has infinite depth.
 void fill_unknown(DepthImage& depth) {
   for (int y = 0; y < depth.height; ++y) {
     float* row = &depth.values[std::size_t(y) * depth.width];

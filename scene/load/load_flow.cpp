@@ -85,7 +85,8 @@ Side read_side(TableReader reader, const FlowProblem& problem, int axis, int whi
   return side;
 }
 
-// What cannot leave must not come in. Among obstacles the solver looks, who knows what they leave open.
+// Inflow and outflow must be balanced unless a side is open. With obstacles the solver checks again, since only it
+// knows which openings they close.
 void require_balance(const TableReader& sides, const FlowProblem& problem) {
   double net = 0, gross = 0;
   for (int axis = 0; axis < problem.dimensions; ++axis) {
@@ -134,7 +135,7 @@ Interval read_time(const TableReader& reader) {
   return time;
 }
 
-// What lies in the box, not beside it.
+// Reads a region that must overlap the box.
 Region read_place(const TableReader& reader, const FlowProblem& problem) {
   const Region region = read_region(reader.required_table("region"));
   const Box part = intersect(bounding_box(region), problem.box);

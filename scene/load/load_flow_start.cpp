@@ -1,4 +1,4 @@
-// What a flow begins with: [start].
+// Loads the initial state of a flow: [start].
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -55,7 +55,7 @@ void require_density(const TableReader& reader, const std::string& path, const V
       reader.fail("file", fmt::format("{}: a density of {}, expected at most {}", path, value, density_range.greatest));
 }
 
-// What the file holds is added to the rest: the grids that are named, or the density.
+// Reads the file's grids, which are added to the other initial values: the named grids, or the density.
 void read_start_file(const TableReader& reader, const std::string& folder, FlowProblem& problem) {
   const std::vector<std::string> others = {"temperature_grid", "velocity_grid"};
   const bool no_density = std::any_of(others.begin(), others.end(), [&](auto& key) { return reader.has(key); });

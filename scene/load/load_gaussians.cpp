@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::size_t most_gaussians = std::size_t(1) << 20;  // every ray may have to look at each
 constexpr std::string_view header = "center_x,center_y,center_z,width,amplitude";
-// What `airlight fit` writes: who is who from frame to frame, for programs that interpolate; no renderer asks.
+// Header that `airlight fit` writes. Ids identify Gaussians from frame to frame, for programs that interpolate;
+// renderers do not use them.
 constexpr std::string_view header_with_ids = "id,center_x,center_y,center_z,width,amplitude";
 constexpr Range id{0, 2147483647};
 

@@ -122,7 +122,7 @@ TriangleMesh read_procedural(const std::string& type, TableReader& reader) {
     reader.allow(surface_keys_and({"size", "transform"}));
     return make_teapot(int(reader.integer("size", 2, 256)));
   } catch (const Error& e) {
-    // What the shape itself complains about does not know where it stands.
+    // The shape's own error messages do not know the position in the file.
     if (std::string(e.what()).find(reader.where()) != std::string::npos) throw;
     reader.fail("", e.what());
   }

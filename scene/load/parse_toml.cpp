@@ -17,8 +17,8 @@ std::string place(const std::string& name, std::size_t line, std::size_t column)
   return is_override(name) ? name : fmt::format("{}:{}:{}", name, line, column);
 }
 
-// Walks the text outside strings and comments, where brackets and dots nest. What this walk and the parser see
-// differently is no TOML, and the parser ends there.
+// Walks the text outside strings and comments, where brackets and dots nest. A text on which this walk and the parser
+// disagree is no TOML, and the parser ends there.
 class Nesting {
  public:
   Nesting(std::string_view text, const std::string& name) : text_(text), name_(name) {}

@@ -19,7 +19,7 @@ Medium read_medium(TableReader, const std::string& folder);
 Surface read_surface(TableReader, const std::string& folder);
 Region read_region(TableReader);
 std::shared_ptr<const Backdrop> read_backdrop(TableReader, const std::string& folder, const Camera&);
-// As the scene's camera sees them on its film.
+// The particles as the scene's camera sees them on its film.
 std::shared_ptr<const Backdrop> read_particles(TableReader, const std::string& folder, const Scene&);
 
 // The kind that the key `type` names, as it is by default; `name` names a kind.

@@ -12,7 +12,7 @@
 //   intensity * extinction * length * phase / d^2 1e-96 to 1e86; its square 1e-192 to 1e172; sums of 1e12 of those.
 // An albedo may be any share: it only multiplies, and a picture (32-bit floats) holds nothing below 1e-45.
 // Extinction ends where a mean free path drowns in the rounding of places (require_resolved).
-// What computes in single precision looks at scene/single_precision.h as well.
+// Renderers in single precision also check scene/single_precision.h.
 #pragma once
 #include "scene/load/values.h"
 #include "scene/scene.h"
@@ -23,7 +23,8 @@ class TableReader;
 
 inline constexpr double least_length = 1e-9, greatest_length = 1e9;  // [m]
 
-// Of a metre at the greatest extinction: a mean free path is then 1e5 times the rounding of places a metre away.
+// Optical depth of a metre at the greatest extinction. A mean free path is then 1e5 times the rounding of coordinates
+// at a distance of one metre.
 inline constexpr double greatest_depth = 1e11;
 
 inline constexpr Range coordinate =
@@ -40,7 +41,7 @@ inline constexpr Range anisotropy{-0.999999, 0.999999};        // of Henyey and 
 inline constexpr Range field_of_view{1e-6, pi - 1e-6};         // [rad]
 inline constexpr Range exponent_range{0, 1e6};                 // of Phong
 
-// What cannot be seen in one value of a file. Each throws Error at the key.
+// Limits that depend on several values of a file. Each function throws Error at the key.
 
 // Extinction per density times the greatest density, or amplitude, or constant.
 void require_extinction(const TableReader&, const Medium&);

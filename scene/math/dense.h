@@ -8,7 +8,7 @@
 
 namespace airlight::scene {
 
-// A B. What is no stored matrix, such as a transposed one, is copied first.
+// The product A B. Arguments that are not stored matrices, such as a transposed one, are copied first.
 Eigen::MatrixXd product(const Eigen::Ref<const Eigen::MatrixXd>& a, const Eigen::Ref<const Eigen::MatrixXd>& b);
 
 // Eigenvalues, ascending, and orthonormal eigenvectors, one a column.
@@ -18,7 +18,8 @@ struct SymmetricModes {
 };
 SymmetricModes symmetric_modes(const Eigen::MatrixXd&);  // reads the lower triangle
 
-// A square matrix in factors L U with partial pivoting. Of a singular matrix `solve` gives values that are not finite.
+// A square matrix in factors L U with partial pivoting. For a singular matrix, `solve` returns values
+// that are not finite.
 class SquareFactors {
  public:
   explicit SquareFactors(const Eigen::MatrixXd&);

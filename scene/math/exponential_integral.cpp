@@ -41,8 +41,8 @@ Complex by_continued_fraction(Complex z) {
 }  // namespace
 
 Complex scaled_exponential_integral(Complex z) {
-  // |z| beyond 1e150 would overflow in the norm; there the first term of the fraction is exact. Of what is no number
-  // the fraction has no depth.
+  // |z| beyond 1e150 would overflow in the norm; there the first term of the fraction is exact. For NaN the depth of
+  // the fraction would be undefined.
   if (!(std::abs(z.real()) + std::abs(z.imag()) <= 1e100)) return 1.0 / z;
   return std::norm(z) < 4 ? by_series(z) : by_continued_fraction(z);
 }

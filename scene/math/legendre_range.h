@@ -15,10 +15,10 @@ Eigen::MatrixXd legendre_restriction(int n, double lo, double hi);
 // that the higher ones can add up to. The hull alone up to degree 7, where corner values are met exactly. Rounding is not counted: the
 // caller knows how large the series was that this one is a part of. Axes from `dimensions` on are absent (length 1, no L_0).
 Interval legendre_range(const Eigen::VectorXd& f, const TensorShape&, int dimensions = 3);
-// Of a series in one variable.
+// Range of a series in one variable.
 Interval legendre_range(const Eigen::VectorXd& series);
 
-// What |f| cannot exceed: sum of |coefficient| times the greatest of its function.
+// Upper bound of |f|: sum of |coefficient| times the greatest value of its function.
 double legendre_bound(const Eigen::VectorXd& f, const TensorShape&, int dimensions = 3);
 
 // Where a series is greatest: at one place at least `found`, nowhere above `bound` but for rounding.

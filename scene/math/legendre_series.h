@@ -4,7 +4,7 @@
 
 namespace airlight::scene {
 
-// What legendre_derivative and legendre_integral do, without the matrices.
+// Derivative and primitive of a series, like legendre_derivative and legendre_integral, without the matrices.
 Eigen::VectorXd series_slope(const Eigen::VectorXd&);      // as many coefficients
 Eigen::VectorXd series_primitive(const Eigen::VectorXd&);  // 0 at -1; one more
 

@@ -29,7 +29,7 @@ class TripleProduct {
   std::vector<Term> terms_;
 };
 
-// That of this order, computed when it is first asked for and kept. Thread safe.
+// The triple product of this order. Computed on first use and cached; thread-safe.
 const TripleProduct& triple_product(int order);
 
 }  // namespace airlight::scene

@@ -15,7 +15,7 @@ struct ShQuarterTurn {
   std::vector<int> first, column;
   std::vector<double> value;
 };
-// That of this order, computed when first asked for and kept. Thread safe. Throws Error unless 1 <= order <= 12.
+// The quarter turn for this order. Computed on first use and cached; thread-safe. Throws Error unless 1 <= order <= 12.
 const ShQuarterTurn& sh_quarter_turn(int order);
 
 // Coefficients of g with g(R w) = f(w), R a rotation matrix. Absolute error about 1e-14 of the greatest coefficient.

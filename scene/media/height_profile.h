@@ -8,7 +8,7 @@
 
 namespace airlight::scene {
 
-// The same at all heights.
+// Factor 1 at all heights.
 struct SameAtAllHeights {};
 
 // Straight lines between knots, constant beyond the first and the last.

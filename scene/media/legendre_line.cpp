@@ -55,7 +55,7 @@ LegendreLine::LegendreLine(const LegendreBox& field, const Ray& ray, Interval t)
     if (ray.direction[Eigen::Index(axis)] != 0) degree += field.shape()[axis] - 1;
   const LegendrePoints& points = legendre_points(degree + 1);
   series_ = points.analysis * values_on(field, ray, t, points.node);
-  // Of [-1, 1]; times half the range it is that of the world.
+  // Half the range converts the integral over [-1, 1] to world units.
   primitive_ = 0.5 * t.length() * series_primitive(series_);
   if (field.negative())
     isolate(series_, t);

@@ -17,7 +17,8 @@
 
 namespace airlight::scene {
 
-// Fields that a scene shares. Whoever looks inside one includes its header; most files that see a medium do not.
+// Fields that a scene shares. Files that use the contents of a field include its header; most files that
+// use a medium do not.
 struct Fitted;
 struct Fogmap;
 class LegendreBox;
@@ -28,12 +29,12 @@ struct Homogeneous {
 };
 
 using GridPointer = std::shared_ptr<const VoxelGrid>;        // never null in a scene
-using FogmapPointer = std::shared_ptr<const Fogmap>;         // likewise
-using LegendrePointer = std::shared_ptr<const LegendreBox>;  // likewise
-using FittedPointer = std::shared_ptr<const Fitted>;         // likewise
+using FogmapPointer = std::shared_ptr<const Fogmap>;         // never null in a scene
+using LegendrePointer = std::shared_ptr<const LegendreBox>;  // never null in a scene
+using FittedPointer = std::shared_ptr<const Fitted>;         // never null in a scene
 
-// The closed set of density fields. Whoever asks which one it is names all of them (match), so that a new one does not
-// compile where it is not thought of; a renderer that does not know one refuses it by name (unknown_field).
+// The closed set of density fields. Code that distinguishes them must name all of them (match), so that a new one does
+// not compile where it is not handled. A renderer that does not support one refuses it by name (unknown_field).
 using DensityField = std::variant<Homogeneous, GaussianSum, GridPointer, FogmapPointer, LegendrePointer, FittedPointer>;
 
 double density(const DensityField&, const Point3& x);
@@ -49,7 +50,7 @@ double constant_part(const DensityField&);
 Box varied_support(const DensityField&);
 // The density of a field that cannot vary [-]; nothing for the others.
 std::optional<double> homogeneous_density(const DensityField&);
-// Of any of its parts [-]: where Gaussians overlap the sum may be greater.
+// Greatest density of any part of the field [-]. The sum can be greater where Gaussians overlap.
 double greatest_density(const DensityField&);
 std::string field_name(
     const DensityField&);  // "homogeneous", "gaussians", "grid", "fogmap", "legendre", "fitted", as in scene files

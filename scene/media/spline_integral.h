@@ -53,7 +53,7 @@ struct Piece {
   double from, to;
 };
 
-// Of f times a factor that is a + b t.
+// Integral of f(t) (a + b t) over the piece.
 template <int n>
 double linear_piece(const Piece& p, const MapLine& line, double a, double b) {
   const UnitRule& rule = unit_rule(n + 1);
@@ -66,8 +66,8 @@ double linear_piece(const Piece& p, const MapLine& line, double a, double b) {
   return length * sum;
 }
 
-// Of f times exp(-(y - base) / scale), all of it above the base. Pieces of at most one scale height from the lower end
-// on, until the rest weighs below rounding.
+// Integral of f(t) exp(-(y(t) - base) / scale) over a piece that lies above the base. Parts of at most one scale height
+// are summed from the lower end until the rest is below rounding.
 template <int n>
 double exponential_piece(const Piece& p, const MapLine& line, const ExponentialFall& fall) {
   constexpr int points = n + 6;

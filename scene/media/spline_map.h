@@ -35,7 +35,7 @@ class SplineMap {
   double coefficient(int i, int j) const;  // 0 outside the range
   std::vector<double> coefficients() const;
   double at(double u, double v) const;
-  // Of f over [lo, hi] of u and v: rigorous (the convex hull of the coefficients that reach there).
+  // Bounds of f over [lo, hi] of u and v: rigorous (the convex hull of the coefficients that reach there).
   Interval bounds(const double (&lo)[2], const double (&hi)[2]) const;
 
   // The coefficient of cell (i, j) of the support; that m columns and k rows before it stands at [-m - k * stride()].

@@ -10,7 +10,7 @@
 namespace airlight::scene::vdb {
 namespace {
 
-// What OpenVDB throws becomes an Error that says where.
+// Converts exceptions of OpenVDB to an Error that says where.
 template <class Body>
 auto telling(const std::string& where, const Body& body) {
   try {

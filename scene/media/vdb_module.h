@@ -1,5 +1,6 @@
-// What the library airlight_vdb.so offers: reading and writing of OpenVDB files. A library of its own, because loading OpenVDB takes
-// 40 ms (57,000 relocations), three times as long as all else that happens before main: only commands that read or write such files load it.
+// Interface of the library airlight_vdb.so: reading and writing of OpenVDB files. It is a separate library because
+// loading OpenVDB takes 40 ms (57,000 relocations), three times as long as all else that happens before main. Only
+// commands that read or write such files load it.
 #pragma once
 #include <map>
 #include <string>

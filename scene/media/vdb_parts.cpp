@@ -68,7 +68,7 @@ void check_sidecar(const std::string& path, std::string_view file) {
     fail(path, fmt::format("damaged: its checksum is {}, {}.xxh128 says {}", found, path, expected.substr(0, 32)));
 }
 
-// What io::File does, on bytes that have been checked.
+// Reads like io::File, from bytes that have been checked.
 class Reader : public openvdb::io::Archive {
  public:
   openvdb::GridBase::Ptr read(std::istream& stream, const VdbEntry& entry) {
@@ -93,7 +93,8 @@ class Reader : public openvdb::io::Archive {
 
 class Writer : public openvdb::io::Archive {
  public:
-  // The same grids give the same bytes: OpenVDB marks each file with a random number, which is made from the rest here.
+  // Equal grids give equal bytes: OpenVDB marks each file with a random number, which is here computed
+  // from the content.
   std::string bytes_of(const openvdb::GridCPtrVec& grids, const openvdb::MetaMap& notes = {}) const {
     // Doubled as it grows the text would take three times its length.
     std::string room;

@@ -1,4 +1,4 @@
-// What reading and writing of OpenVDB files have in common: for vdb_*.cpp alone, the only sources that see OpenVDB.
+// Common parts of reading and writing OpenVDB files: for vdb_*.cpp alone, the only sources that include OpenVDB.
 #pragma once
 #include <openvdb/openvdb.h>
 
@@ -33,7 +33,7 @@ inline bool is_plain_zero(const openvdb::Vec3s& v) {
 
 std::string text(const openvdb::Coord&);
 
-// Of samples and the box that they fill.
+// Checksum of the samples and of the box that they fill.
 std::string checksum(const Eigen::Vector3i& size, const Eigen::Vector3i& origin_index, const std::vector<float>&);
 
 // The grid `name` of a file, each length in it checked before. Throws Error.
@@ -51,7 +51,7 @@ void check_noted(const openvdb::GridBase&, const VoxelGrid& shape, const std::ve
 VoxelGrid shape_of(const openvdb::GridBase&, const openvdb::CoordBBox& samples, std::size_t max_voxels,
                    const std::string& where);
 
-// The same grids give the same bytes.
+// The bytes of a file with these grids. Equal grids give equal bytes.
 std::string bytes_of(const openvdb::GridCPtrVec& grids, const openvdb::MetaMap& notes = {});
 openvdb::FloatGrid::Ptr fog_volume(const VoxelGrid&, const std::string& name);
 

@@ -43,7 +43,7 @@ double density_at_sample(const VoxelGrid&, const Point3& sample);
 // Least and greatest density over a world box; rigorous, and exact to rounding where the grid is not rotated against
 // it.
 Interval density_bounds(const VoxelGrid&, const Box&);
-// The same over a box in samples, always exact to rounding.
+// Least and greatest density over a box in samples, always exact to rounding.
 Interval density_bounds_at_samples(const VoxelGrid&, const Box& samples);
 
 // Integral of the density over t in [t0, t1] of the ray [m]: two-point Gauss in every voxel crossed, exact for the
@@ -64,8 +64,8 @@ Box support(const VoxelGrid&);
 // `xxh128sum PATH`) it must match.
 VoxelGrid read_vdb(const std::string& path, const std::string& name = "density", std::size_t max_voxels = 1u << 30);
 
-// Writes the samples as a float fog volume called `name`, atomically; zero samples stay inactive. What it writes comes
-// back bit for bit (the rotation to rounding), unless read_vdb must refuse it. Throws Error.
+// Writes the samples as a float fog volume called `name`, atomically; zero samples stay inactive. read_vdb reads it
+// back bit for bit (the rotation up to rounding), unless it must refuse the grid. Throws Error.
 void write_vdb(const std::string& path, const VoxelGrid&, const std::string& name = "density");
 
 }  // namespace airlight::scene

@@ -138,7 +138,7 @@ TEST_CASE("probes say which of their figures depend on speed", "[agreement]") {
   }
 }
 
-// What a run has written agrees with the run itself.
+// The record that a run has written agrees with the run itself.
 TEST_CASE("a record is read back as the rows that it is of", "[agreement]") {
   Outcome outcome;
   outcome.experiment.id = "g/e";

@@ -138,7 +138,7 @@ TEST_CASE("scripts give the committed fogmaps", "[authoring][wavelet_fog][scenes
     write(drawn, entry.path().string(), folder.file(name + ".toml"));
     const std::filesystem::path committed = entry.path().parent_path() / name;
     CHECK(read_bytes(folder.file(name + ".toml")) == read_bytes(committed.string() + ".toml"));
-    // Of the picture the values: how they are packed is the library's.
+    // Pictures are compared by their values, because the library decides how they are packed.
     CHECK(scene::read_grey_image(folder.file(name + ".png"), "", 10'000).values ==
           scene::read_grey_image(committed.string() + ".png", "", 10'000).values);
   }

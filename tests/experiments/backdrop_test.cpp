@@ -17,7 +17,7 @@ namespace {
 
 constexpr int width = 6, height = 4;
 
-// Of pixel i the depth 1 + i / 2 and a colour of its own; the last has no end.
+// A picture in which pixel i has the depth 1 + i / 2 and a colour of its own. The last pixel has infinite depth.
 std::shared_ptr<const scene::Backdrop> picture() {
   scene::Backdrop backdrop{width, height, {}, {}, true};
   for (int i = 0; i < width * height; ++i) {

@@ -1,4 +1,5 @@
-// What `airlight choose` is made of: pixels of a film, candidates, ranking, verdicts, variations; and experiments of kind "choices".
+// Parts of `airlight choose`: pixels of a film, candidates, ranking, verdicts, variations; and
+// experiments of kind "choices".
 #include <catch2/catch.hpp>
 #include <set>
 
@@ -159,7 +160,7 @@ TEST_CASE("choosing: a choice is good if it is near the best, as far as interval
   CHECK_FALSE(judge_choice(&judged[2], judged, 0.016, 0).hit);  // much too slow
   CHECK_FALSE(judge_choice(nullptr, judged, 0.016, 0).hit);
   CHECK(judge_choice(nullptr, judged, 1e-4, 0).hit);  // nothing fits
-  // What another timing may find just as well decides nothing.
+  // A difference in time that another timing may reverse decides nothing.
   judged[1].times[0].seconds = {0.0155, 0.015, 0.016};
   CHECK(judge_choice(&judged[0], judged, 0.016, 0).hit);
   CHECK(judge_choice(&judged[1], judged, 0.015, 0).hit);

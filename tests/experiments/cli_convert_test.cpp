@@ -93,7 +93,7 @@ TEST_CASE("endings may be in capitals", "[cli]") {
   good("convert U.VDB L.CSV --coefficients 2 --cells 2");
   good("convert U.VDB M.EXR --pixels 4 --samples 1");
   good("fit U.TOML -n 2 --out fitted");
-  // As a fogmap, and as picture and depth behind the media.
+  // The converted files are used as a fogmap, and as picture and depth behind the media.
   folder.write("map.toml", camera +
                                "[[medium]]\ntype = 'fogmap'\nfile = 'M.EXR'\nchannel = 'Y'\ncell = 1\nsigma_t = 1\n"
                                "region = { type = 'slab', lo = 0, hi = 1 }\n");

@@ -52,7 +52,7 @@ TEST_CASE("gates of a machine without a GPU are skipped, unless the device was a
   unsetenv("AIRLIGHT_GPU");
 }
 
-// What a device computed is kept for that device alone.
+// Results of a device are kept for that device alone.
 TEST_CASE("rows of a device are not taken for another's", "[cli]") {
   const SmallProject folder(box_of_fog(8, 6), against_quadrature({{"GPU", "ray_marcher_gpu", "0.1"}}));
   const Result first = run("gates --root .", folder);

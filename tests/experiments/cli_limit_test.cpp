@@ -82,7 +82,7 @@ TEST_CASE("time that a command may not take is refused before it is spent", "[cl
           "2000 Gaussians in 216000000 samples: takes about ");
   refused(folder, "author air.jsonl -o a.toml --limit 10s", "airbrush of 900000000 steps: takes about ");
   refused(folder, "author blur.jsonl -o a.toml --limit 10min", "a blur of 9000 pixels over 8192 x 8192: takes about ");
-  // What the first second shows.
+  // The limit is checked by the time of the first second.
   refused(folder, "render fog.toml -m path_tracer --samples 99999999999 -o a.exr --limit 1h",
           "path_tracer fog: takes about ");
   refused(folder, "simulate flow.toml --set n=4 --set dt=1e-8 --out o --limit 20s", "stable_fluids f: takes about ");

@@ -74,7 +74,8 @@ std::string monte_carlo_objection(const CommittedReference& r, const scene::Film
   given["stream"] = "1";
   given["target_error"] = "0";
   Equality e;
-  // As few samples as find that bias: this looks at the noise alone, not at the difference, and so costs no false alarms.
+  // Uses the fewest samples that can detect this bias. The choice depends on the noise alone, not on the difference,
+  // and so causes no false alarms.
   const auto strong = [&] { return e.image_in_range && e.detectable_bias <= most_undetected; };
   int samples = 16;
   do {
@@ -176,7 +177,7 @@ TEST_CASE("a committed film is used, and the record says so", "[committed_refere
   CHECK_THAT(
       read_bytes(project.file("results/g/e/table.md")),
       Contains("read from the committed film `" + info.committed + "`, made by airlight ") && Contains(info.kept));
-  // The same samples, of which the batches are rounded; quadrature has no noise and is kept exactly.
+  // The samples are unchanged; only the batches are rounded. Quadrature has no noise and is kept exactly.
   const Measure &a = before.rows.at(0).measures.at(0), &b = after.rows.at(0).measures.at(0);
   if (experiment == exact_experiment) {
     CHECK(a.value == b.value);

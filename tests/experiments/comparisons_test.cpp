@@ -1,4 +1,4 @@
-// What is read off several rows together, with answers worked by hand.
+// Comparisons of several rows, with answers worked by hand.
 #include "experiments/driver/comparisons.h"
 
 #include <catch2/catch.hpp>
@@ -40,8 +40,8 @@ const std::vector<Row> two_curves{row("s", "slow", 1, 1), row("s", "slow", 100, 
 
 }  // namespace
 
-// The ratio of times goes from 1 to 10 evenly in logarithms: geometric mean 3.16. That of errors at equal time (1/t
-// over 1/t^2, t from 1 to 10): the same.
+// The ratio of times goes from 1 to 10 evenly in logarithms: geometric mean 3.16. The ratio of errors at equal time
+// (1/t over 1/t^2, t from 1 to 10) has an equal mean.
 TEST_CASE("speed-ups of two curves by hand", "[comparisons]") {
   const TextTable table = equal_error_and_time(outcome_of(two_curves));
   REQUIRE(table.size() == 2);
@@ -75,7 +75,7 @@ TEST_CASE("rows below the noise floor are on no curve", "[comparisons]") {
   CHECK(equal_error_and_time(outcome_of(rows)) == equal_error_and_time(outcome_of(two_curves)));
   // Only such rows: there is no curve, and no line.
   CHECK(equal_error_and_time(outcome_of({rows[0], rows[5]})).size() == 1);
-  // The same figures above their noise: 200 times 0.005 is a further point of 1/e.
+  // Now the figures are above their noise: 200 times 0.005 is a further point of 1/e.
   rows[4] = row("s", "slow", 200, 0.005, 0.004);
   CHECK(cell(equal_error_and_time(outcome_of(rows)), 1, "over errors") == "0.01 to 1");
   rows[5] = row("s", "fast", 20, 0.001, 0.0009);

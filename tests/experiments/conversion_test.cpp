@@ -78,7 +78,7 @@ TEST_CASE("rows of converted media have two errors, and what the conversion lost
   CHECK(coarse.scene_hash != fine.scene_hash);
   CHECK(coarse.counters.at("numbers") < fine.counters.at("numbers"));
   CHECK(coarse.counters.at("density_error") > 4 * fine.counters.at("density_error"));
-  // What the user sees falls with the voxels; what the ray marcher adds is small for both.
+  // The total error falls with the voxels; the ray marcher's own error is small for both.
   CHECK(measure(coarse, "rel_l2") > 4 * measure(fine, "rel_l2"));
   CHECK(measure(coarse, "rel_l2") > 4 * measure(coarse, "converted.rel_l2"));
   for (const Row& row : outcome.rows) CHECK(measure(row, "converted.rel_l2") < 0.015);

@@ -20,8 +20,8 @@ constexpr double off = 0.01;  // relative, of the image beside its noise
 
 double biased(int x, int y, int c) { return gradient(x, y, c) * (1 + ((x + y) % 2 ? 1 : -0.5) * off); }
 
-// The same grey noise in all channels of a pixel, from four samples, as a path tracer stores it: mean, se and n. Gamma
-// distributed as in noisy().
+// A film with grey noise, equal in all channels of a pixel, from four samples, as a path tracer stores it: mean, se and
+// n. The noise is gamma distributed as in noisy().
 Film four_samples(const Value& value, double sigma, unsigned seed) {
   Film film(width, height);
   std::mt19937_64 random(seed);
@@ -155,7 +155,7 @@ TEST_CASE("counted noise that is not known is refused, exact images are exact", 
   CHECK_THROWS_WITH(counted(one_sample), Catch::Contains("noisy"));
   one_sample.add("n").assign(48, 2.0f);
   CHECK(counted(one_sample).value == Approx(same.value));
-  // What is removed elsewhere needs batches.
+  // Without ImageNoise::counted noise is removed from the error, which needs batches.
   CHECK_THROWS_WITH(measure({"rmse"}, one_sample, reference, "mean", {}), Catch::Contains("noisy"));
 }
 

@@ -23,7 +23,7 @@ Row timed_row(double factor, const std::string& group, std::size_t first = 0) {
   return row;
 }
 
-// Of one row each, at the same error.
+// Ratio of times of two rows with equal errors.
 std::optional<Estimate> ratio_of_times(const Row& baseline, const Row& other) {
   return bootstrap({&baseline}, {&other}, "rel_l2",
                    [](const auto& a, const auto& b) { return std::optional(a[0].time.value / b[0].time.value); });
@@ -67,7 +67,7 @@ TEST_CASE("a ratio of errors has the interval that theirs leave it", "[driver]")
 
 namespace {
 
-// What a row's point is drawn as, a thousand times.
+// A thousand bootstrap samples of a row's point.
 std::vector<Point> drawn(const Row& row) {
   std::vector<Point> points;
   const Row one = timed_row(1, "another group");

@@ -1,4 +1,4 @@
-// What the driver makes of noise and masks: rows are what the metrics say of the pictures.
+// Noise and masks in the driver: rows contain the metrics of the pictures.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
@@ -82,7 +82,7 @@ const Measure& found(const Row& row, const std::string& metric) {
 // The path tracer's own noise is half its error in one row and none of it in the other; the reference's is in no row's
 // error and in every row's interval.
 TEST_CASE("noise of references and images reaches the rows", "[driver]") {
-  // As many lit pixels as tell noise from none: most of the noise is in the few beside the lamp.
+  // The film is large enough to tell noise from none: most of the noise is in the few lit pixels beside the lamp.
   const std::string larger = replaced(replaced(scene_file, "width = 24", "width = 96"), "height = 18", "height = 72");
   const NoiseProject project(replaced(larger, "0.001", "0.5"), experiment_file);
   const Outcome outcome = project.run();

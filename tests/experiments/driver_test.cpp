@@ -202,7 +202,7 @@ std::string with(const std::string& insertion, const std::string& before) {
 
 }  // namespace
 
-// What is wrong lies in the last scene, method or layer: nothing of the first may have been computed by then.
+// The fault lies in the last scene, method or layer: nothing of the first may have been computed when it is found.
 TEST_CASE("an experiment that is refused writes nothing, and removes nothing", "[driver]") {
   const Project project;
   const std::string scene = "[[scene]]\nname = \"two\"\nfile = \"scenes/", before = "[reference]";

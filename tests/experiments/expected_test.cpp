@@ -1,4 +1,4 @@
-// What was printed beside what was measured, and the sentence that quotes it.
+// Printed values beside measured ones, and the sentence that quotes them.
 #include "experiments/driver/expected.h"
 
 #include <catch2/catch.hpp>

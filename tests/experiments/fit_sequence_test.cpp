@@ -100,7 +100,7 @@ TEST_CASE("a fit that was stopped after any frame, or goes on with more of them,
     some.files.resize(std::size_t(frames));
     some.options.unit = 1.6;
     run(some);
-    // What an end between two files leaves: a frame that the record does not know.
+    // A stop between two files leaves a frame that the record does not know.
     parts.folder.write("fit/puff_" + std::to_string(frames) + ".csv", "half a fra");
     FitSequence all = parts.sequence;
     all.options.unit = 1.6;

@@ -1,4 +1,4 @@
-// Which figures pass their gates, worked by hand.
+// Figures that pass their gates and figures that do not, worked by hand.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -34,7 +34,7 @@ std::vector<GateResult> judged(const std::vector<GateCase>& gates, const std::ve
   return judge(e, rows);
 }
 
-// What is said of that row alone.
+// The verdict on that row alone.
 std::string verdict(const std::vector<GateCase>& gates, const Row& r) {
   const auto results = judged(gates, {r});
   REQUIRE(results.size() == 1);

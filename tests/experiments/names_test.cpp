@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// As a basic string of TOML.
+// The text as a basic string of TOML.
 std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
@@ -178,7 +178,7 @@ TEST_CASE("names are held apart before anything is written", "[driver][experimen
   CHECK(said(top + reference + scene + marcher + named("A b") + marcher + named("A-b")) == "");
 }
 
-// Of names that a folder cannot have the pictures lie in the project's folder all the same.
+// Pictures stay in the project's folder even for names that a folder cannot have.
 TEST_CASE("a scene named like the folder above stays below its experiment", "[driver][experiment]") {
   const TemporaryFolder elsewhere;
   for (const std::string& name : std::vector<std::string>{"..", ".", ".hidden", "../../../x", elsewhere.file("x")}) {

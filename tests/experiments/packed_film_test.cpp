@@ -1,4 +1,4 @@
-// What a committed reference keeps of a film: rounding adds the noise that it states, and no bias.
+// Packed films of committed references: rounding adds the noise that it states, and no bias.
 #include "experiments/driver/packed_film.h"
 
 #include <catch2/catch.hpp>

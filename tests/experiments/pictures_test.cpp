@@ -1,4 +1,4 @@
-// What the driver shows of a film.
+// Pictures that the driver makes of a film.
 #include "experiments/driver/pictures.h"
 
 #include <catch2/catch.hpp>
@@ -9,7 +9,7 @@ namespace pictures_test {
 using namespace airlight::experiments;
 using airlight::scene::Film;
 
-// Of the luminances 0 to 100 the 99 % quantile is 99: shown as 0.8.
+// For the luminances 0 to 100 the 99 % quantile is 99: shown as 0.8.
 TEST_CASE("a picture's exposure shows its 99 % quantile as 0.8", "[driver]") {
   Film film(101, 1);
   auto& mean = film.add("mean");

@@ -1,4 +1,5 @@
-// What a processor lacks that the program needs. The C library can be told to hide a feature, as if the processor lacked it.
+// Processor features that the program needs and a processor lacks. The C library can be told to hide a feature, as if
+// the processor lacked it.
 #include "experiments/application/processor_check.h"
 
 #include <catch2/catch.hpp>

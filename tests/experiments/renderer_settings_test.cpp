@@ -1,4 +1,5 @@
-// What the settings of every renderer and solver must keep: one that is not read beside the others is refused, one that is read is accepted.
+// Rules for the settings of every renderer and solver: a setting that is not read beside the others is refused, one
+// that is read is accepted.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -105,7 +106,7 @@ void check_conditions(const Specs& all, const SettingSpec& spec) {
       return;
     }
     ++accepted;
-    // What it depends on is read too: a condition names all that leads to it.
+    // A setting on which it depends is read too: a condition names all that leads to it.
     for (const auto& [other, values] : *read) with[other] = text(other);
     CHECK(refusal(all, with) == "");
   });

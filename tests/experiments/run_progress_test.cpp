@@ -12,7 +12,7 @@ using Catch::Contains;
 
 namespace {
 
-// What was written to a file that is open.
+// Content of an open file.
 std::string written(std::FILE* file) {
   std::fflush(file);
   std::string text(4096, '\0');
@@ -46,7 +46,7 @@ TEST_CASE("the time left is the work left times how slow this machine is", "[pro
   CHECK(time.left(0, 0, 0) == 1000);  // nothing is measured: as there
   time.done(90, 190);
   CHECK(time.left(0, 0, 0) == Approx(910 * 2.0));  // (190 + 10) / (90 + 10)
-  // Of what is under way: what it should still take, or from a tenth on what its share says.
+  // Time of the work under way: the planned rest, or from a tenth on an extrapolation from the share that is done.
   CHECK(time.left(10, 0, 5) == Approx(900 * 2.0 + 15));
   CHECK(time.left(10, 0, 500) == Approx(900 * 2.0));
   CHECK(time.left(10, 0.25, 30) == Approx(900 * 2.0 + 90));

@@ -69,7 +69,7 @@ TEST_CASE("a simulation on a disk that fills up stops with a line, and goes on w
   REQUIRE(run_command(simulate_smoke + "whole", folder).code == 0);
   std::uintmax_t all = 0;
   for (const auto& [name, bytes] : files_of(folder.path() / "whole")) all += bytes.size();
-  // What was on the full disk goes on where there is space.
+  // A simulation that was stopped by a full disk continues where there is space.
   for (const int percent : {3, 40, 60, 80}) {
     INFO(percent << " % of the space");
     const auto result = run_command(

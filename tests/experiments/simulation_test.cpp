@@ -55,7 +55,7 @@ TEST_CASE("a simulation leaves frames that a scene can show, and its history", "
   CHECK_THROWS_WITH(scene::read_vdb((folder.path() / "smoke.0010.vdb").string(), "velocity"),
                     Contains("expected Tree_float_5_4_3"));
 
-  // What is written is what the flow had.
+  // The files contain the flow's values.
   const Simulation again = simulation(folder, {{"dt", "0.02"}});
   const auto flow = again.solver.start(again.problem, again.settings, {});
   for (int step = 0; step < 30; ++step) flow->step(1.0 / 60);
@@ -167,7 +167,7 @@ blob = [ { center = [0.6, 1, 0.5], width = 0.4, density = 1 } ]
         "s.toml", folder.path().string());
     const auto& shown = std::get<scene::LegendrePointer>(scene.media.at(0).field)->coefficients();
     const scene::DensityField medium = flow->medium(name != "two");
-    // Those below 1e-20 are left out.
+    // The files leave out coefficients below 1e-20.
     CHECK((shown - std::get<scene::LegendrePointer>(medium)->coefficients()).cwiseAbs().maxCoeff() < 1e-20);
   }
 

@@ -104,7 +104,7 @@ TEST_CASE("flow_stability: implicit viscosity takes what its closed factor says"
   const FigureMap& map = found.map.value();
   for (std::size_t x = 0; x < 4; ++x)
     CHECK(map.values[x * 13 + 11] / map.values[x * 13 + 12] == Approx(100).epsilon(0.02));
-  // The same for one thread or two.
+  // One thread and two give equal values.
   const std::map<std::string, std::string> s{{"n", "8"}, {"steps", "3"}, {"cfl_per_decade", "1"}, {"dimensions", "3"}};
   const Findings one = run("flow_stability", s, "", 1), two = run("flow_stability", s, "", 2);
   CHECK(one.map->values == two.map->values);

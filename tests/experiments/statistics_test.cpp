@@ -131,8 +131,8 @@ TEST_CASE("two curves without a common error say which one is closer", "[statist
   CHECK(*speed_up_of_exact({point(8, 0.1), point(20, 0), point(10, 0)}, close) == Approx(2));
 }
 
-// Of a mean the jackknife's variance is s^2 / n. Here 1, 2, 3, 6: mean 3, s^2 = 14/3, s^2 / 4 = 7/6; t(0.975, 3) =
-// 3.182446 (tables).
+// For a mean the jackknife's variance is s^2 / n. Here 1, 2, 3, 6: mean 3, s^2 = 14/3, s^2 / 4 = 7/6;
+// t(0.975, 3) = 3.182446 (tables).
 TEST_CASE("a jackknife by hand", "[statistics]") {
   const std::vector<double> without{11.0 / 3, 10.0 / 3, 3, 2};
   const Estimate e = jackknife(3, without);

@@ -1,4 +1,4 @@
-// What a renderer does not know it refuses by name, and all of them in the same words.
+// A renderer refuses unknown kinds by name, and all renderers use the same words.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>

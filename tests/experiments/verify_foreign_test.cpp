@@ -25,7 +25,7 @@ namespace {
 
 const std::string vectors = AIRLIGHT_SOURCE_DIR "/tests/vectors/";
 
-// As files have them: numbers, or decimals in quotes.
+// Reads a number as the files store it: a JSON number, or a decimal in quotes.
 double number(const json& value) {
   if (!value.is_string()) return value.get<double>();
   const std::string& text = value.get_ref<const std::string&>();

@@ -45,7 +45,7 @@ const std::string good = R"({"id": "a", "kind": "F", "in": {"u": 0.0, "v": 0.7},
 
 }  // namespace
 
-// What these check of an implementation no other test repeats.
+// No other test repeats these checks of an implementation.
 TEST_CASE("deterministic vectors verify at their stated tolerance", "[verify][slow]") {
   for (const char* kind :
        {"single_scattering_sphere", "single_scattering_box", "single_scattering_gaussians", "optical_depth",
@@ -234,7 +234,7 @@ TEST_CASE("malformed vectors are refused with file and entry", "[verify]") {
              Contains("not JSON"));
   CHECK_THAT(complaint(fogshop_file(R"({"id": "a", "kind": "F", "kind": "F"})")),
              Contains("key 'kind' is there twice"));
-  // What would run for ever, or reach beyond a list.
+  // Numbers that would run for ever, or reach beyond a list.
   CHECK_THAT(complaint(fogshop_file(R"({"id": "a", "kind": "npsf_coef", "in": {"l": 1e9, "T": 4}, "value": "1"})")),
              Contains("found number 1000000000.0, expected an integer from 0 to 1000"));
   // Messages print what they found by recursion: 100,000 levels end the stack.

@@ -1,4 +1,4 @@
-// What tolerances of oracle vectors allow, and that their readers use them.
+// Tolerances of oracle vectors, and their use by the readers.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
@@ -16,7 +16,7 @@ using namespace airlight;
 using airlight::experiments::verify;
 using airlight::experiments::VerifyProfile;
 
-// What |got - expected| may be, at nine tenths and at eleven tenths of it.
+// The greatest allowed |got - expected|, tested at nine tenths and at eleven tenths of it.
 TEST_CASE("tolerances are what they say", "[verify]") {
   using namespace airlight::experiments::verification;
   for (const double sign : {1.0, -1.0}) {

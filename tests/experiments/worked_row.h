@@ -17,7 +17,7 @@ inline experiments::Row row(const std::string& scene, const std::string& method,
   return r;
 }
 
-// The same, that was not rendered.
+// A row that was not rendered.
 inline experiments::Row not_rendered(const std::string& scene, const std::string& method) {
   experiments::Row r = row(scene, method, "", {});
   r.runs = 0;

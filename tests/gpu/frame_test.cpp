@@ -1,4 +1,5 @@
-// What a Prepared keeps from frame to frame: warm frames allocate nothing, wait once, and bring down what is wanted.
+// Buffers that a Prepared keeps from frame to frame: warm frames allocate nothing, wait once, and
+// download only the wanted layers.
 #include "gpu/frame.h"
 
 #include <algorithm>

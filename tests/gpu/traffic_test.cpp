@@ -1,4 +1,4 @@
-// What passes between processor and device in a warm frame of every GPU method: nothing that nobody asked for.
+// Traffic between processor and device in a warm frame of every GPU method: nothing that nobody asked for.
 #include <catch2/catch.hpp>
 #include <numeric>
 

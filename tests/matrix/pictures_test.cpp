@@ -1,4 +1,4 @@
-// What the picture of every renderer must do, on a scene of each kind that a renderer may know or refuse.
+// Rules for the picture of every renderer, on a scene of each kind that a renderer may know or refuse.
 #include "tests/pictures.h"
 
 #include "experiments/application/renderers.h"

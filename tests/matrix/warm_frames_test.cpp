@@ -1,5 +1,6 @@
-// What a frame costs that differs from the one before in its camera, its lights or nothing, of every renderer on the device: nothing goes up,
-// nothing is allocated, the host waits once, only the layers that are wanted come down; and its picture has the bits of a cold one.
+// Cost of a frame that differs from the previous one in its camera, its lights or nothing, for every renderer on the
+// device. Nothing is uploaded, nothing is allocated, the host waits once, and only the wanted layers are downloaded.
+// The picture has the bits of a cold one.
 #include <set>
 
 #include "experiments/application/renderers.h"

@@ -1,7 +1,7 @@
-// What methods leave out of a scene, by tests/methods/left_out.csv: a line for each method and property of a scene. `base`
-// names the stages that `explain` calls left out; the other properties name those that they leave out too, or compute
-// (+) where base does not, and the counters that are 0 then and are not in base. What belongs to a stage that is left out
-// takes no time.
+// Stages that methods leave out of a scene, by tests/methods/left_out.csv: a line for each method and property of a
+// scene. `base` names the stages that `explain` calls left out. The other properties name the stages that they leave
+// out too, or compute (+) where base does not, and the counters that are 0 then and are not in base. Stages that are
+// left out take no time.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdio>

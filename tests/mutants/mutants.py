@@ -39,7 +39,7 @@ class Builder:
             self.commands = {c["file"]: c for c in json.load(f)}
         # Objects of the program that lie in no library; a planted one stands for its own.
         self.objects, self.libraries = self.linked("tests/airlight_tests")
-        # What the program loads when it meets a file of OpenVDB.
+        # Library that the program loads for OpenVDB files.
         self.vdb_objects, self.vdb_libraries = self.linked("airlight_vdb.so")
         self.stands_for, self.planted_vdb = {}, set()
         self.root = os.path.commonpath([f for f in self.commands if f.endswith("/experiments/application/main.cpp")] or [ROOT])
@@ -122,7 +122,7 @@ class Builder:
 
 
 def named(test):
-    """As Catch2 takes it: a comma would begin another name."""
+    """The test's name, escaped for Catch2: a comma would begin another name."""
     return test.replace(",", "\\,").replace("[", "\\[")
 
 
@@ -219,7 +219,7 @@ def listed():
     return 2 if broken else 0
 
 
-# What a line may become. Strings, comments and includes are left alone.
+# Possible changes of a line. Strings, comments and includes are left alone.
 SWAPS = [(r"<=", "<"), (r">=", ">"), (r"(?<![<\-=])<(?![<=])(?= )", "<="), (r"(?<![>\-=])>(?![>=])(?= )", ">="), (r"==", "!="),
          (r" \+ ", " - "), (r" - ", " + "), (r" \* ", " / "), (r" / ", " * "), (r"&&", "||"), (r"\|\|", "&&"),
          (r"\+= ", "-= "), (r"std::max\(", "std::min("), (r"std::min\(", "std::max("), (r"std::abs\(", "("),

@@ -193,7 +193,7 @@ MUTANTS = [
     bug("above and equal", FIGURES, "float(v > bound)", "float(v >= bound)", "Figures.test_functions"),
     bug("noise hides nothing", FIGURES, '"_low"]) <= 0', '"_low"]) < 0', "Figures.test_puts_the_figures_in"),
     bug("stale pictures go unseen", GALLERY, "if not absent and (b", "if absent and (b", "Gallery.test_renders_what_has_changed"),
-    # What a first-time user meets
+    # The steps of a first-time user.
     bug("setup --check goes on to install", SETUP, "--check) check=1", "--check) check=", "Setup.test_check_lists_and_installs_nothing"),
     bug("setup installs without asking", SETUP, '[ -z "$yes" ]; then', '[ -n "$yes" ]; then', "Setup.test_on_a_terminal_it_asks_once"),
     bug("setup accepts any processor", SETUP, "avx2 bmi2 fma; do", "bmi2 fma; do", "Setup.test_a_processor_without_avx2"),

@@ -116,7 +116,7 @@ TEST_CASE("a nearer surface hides the backdrop, and the backdrop a farther one",
   CHECK(!camera_end(far, ray).hit);
   CHECK(camera_end(far, ray).seen);
   CHECK(ray_end(far, ray).hit);
-  // What has no end is behind every surface, and in front of environments.
+  // A pixel with infinite depth is behind every surface, and in front of environments.
   CHECK(camera_end(far, camera_ray(far.camera, 3.5, 1.5, 4, 2)).hit);
 }
 
@@ -154,7 +154,7 @@ TEST_CASE("the content of a backdrop is part of the scene's hash", "[backdrop]")
   };
   const std::string film = "image = 'film.exr'\n";
   const std::string one = hash(backdrop(film + "channel = 'distance.R'\n"));
-  CHECK(one == hash(backdrop(film + "depth = 'depth.pfm'\n")));  // the same, written in another way
+  CHECK(one == hash(backdrop(film + "depth = 'depth.pfm'\n")));  // an equal backdrop, written in another way
   CHECK(one != hash(backdrop(film + "channel = 'distance.R'\nscale = 2\n")));
   CHECK(one != hash(backdrop(film + "channel = 'distance.R'\ndepth_scale = 2\n")));
   CHECK(one != hash(perspective));

@@ -90,7 +90,7 @@ TEST_CASE("a film comes back from OpenEXR bit for bit", "[film]") {
   }
   CHECK(folder.entries() == 1);
 
-  // The same film is the same file: results can be compared by checksum.
+  // Equal films give equal files, so that results can be compared by checksum.
   write_exr(folder.file("b.exr"), film, true);
   CHECK(read_bytes(path) == read_bytes(folder.file("b.exr")));
 }

@@ -77,7 +77,7 @@ TEST_CASE("a point moved off its surface does not see it again", "[geometry]") {
     const Vec3 shift(where, -where, where);
     const Sphere ball{Point3(0.5, 0.25, -0.125) + shift, 0.7};
     const TriangleMesh mesh = moved(make_box({Point3(-1, -1, -1), Point3(1, 1, 1)}), 1, shift);
-    // The same box turned: no coordinate is exact.
+    // The box rotated, so that no coordinate is exact.
     TriangleMesh turned = make_box({Point3(-1, -1, -1), Point3(1, 1, 1)});
     const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
     for (Point3& v : turned.vertices) v = turn * v + shift;
@@ -119,7 +119,7 @@ TEST_CASE("degenerate, sliver and duplicate triangles", "[geometry]") {
   TriangleMesh mesh;
   mesh.vertices = {Point3(0, 0, 0),   Point3(1, 0, 0),      Point3(0, 1, 0),
                    Point3(0.5, 0, 0), Point3(1, -1e-12, 0), Point3(1, 0, 0)};
-  // The same triangle three times (rotated, over a repeated vertex), two of zero area, a sliver below.
+  // One triangle three times (rotated, with a repeated vertex), two triangles of zero area, a sliver below.
   mesh.triangles = {{0, 1, 2}, {1, 2, 0}, {0, 5, 2}, {0, 3, 1}, {0, 0, 2}, {0, 4, 1}};
   const auto hits_at = [](const Geometry& geometry, double x, double y) {
     return geometry.all_hits({Point3(x, y, 3), -Vec3::UnitZ()}).size();

@@ -65,7 +65,7 @@ TEST_CASE("a spot light has a full cone, a dark outside and a smooth edge", "[li
   CHECK(at_angle(0.501) == 0);
   spot.inner_angle = spot.outer_angle = pi;
   CHECK(at_angle(pi) == 2);
-  // What reaches a point: intensity over distance squared, nothing outside the cone.
+  // Light that reaches a point: intensity over distance squared, nothing outside the cone.
   spot.inner_angle = 0.3;
   spot.outer_angle = 0.5;
   CHECK(incident(spot, {0, -2, 0}).irradiance[0] == Approx(0.5).epsilon(1e-15));

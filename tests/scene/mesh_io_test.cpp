@@ -55,8 +55,8 @@ TEST_CASE("a cube is the same from every format", "[geometry][mesh_io]") {
   }
 }
 
-// What editors and other programs do to a text: a byte order mark before it, lines that go on behind a backslash, faces
-// over two lines.
+// Changes by editors and other programs: a byte order mark before the text, lines that continue behind a backslash,
+// faces over two lines.
 TEST_CASE("a cube in other spellings is a cube", "[geometry][mesh_io]") {
   const TemporaryFolder folder;
   const std::string mark = "\xEF\xBB\xBF";

@@ -71,7 +71,7 @@ inline std::string binary_ply_cube(bool big_endian) {
   return bytes;
 }
 
-// What read_mesh says about a file of this name and content.
+// Error message of read_mesh about a file of this name and content.
 inline std::string message_for(const std::string& name, const std::string& content) {
   static const TemporaryFolder folder;  // one for all: making them takes longer than reading
   const std::string path = folder.file(name);

@@ -1,4 +1,4 @@
-// What comes from outside stays on one line and is shown as it is written.
+// Text from outside stays on one line and is shown as it is written.
 #include "scene/base/printable.h"
 
 #include <catch2/catch.hpp>

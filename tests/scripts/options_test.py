@@ -78,7 +78,7 @@ class Options(Machine):
                 self.assertEqual((code, err), (0, ""), script)
                 self.assertIn(script, out)
                 self.assertGreater(out.count("\n"), 3, script)
-                # Of the processor: others may be busy with it.
+                # Processor time is measured, because other processes may keep the processor busy.
                 self.assertLess(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, 1, script)
         self.assertFalse(os.path.exists(f"{self.root}/build"))
 

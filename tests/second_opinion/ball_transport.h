@@ -17,19 +17,19 @@ struct BallLight {
 class BallTransport {
  public:
   explicit BallTransport(const BallLight&);
-  // At that distance from the centre: half the integral over the cosine to the radius of P_l times radiance.
+  // At this distance from the centre: half the integral of P_l times radiance over the cosine to the radius.
   double moment(int l, double radius) const;
-  double reduced_moment(int l, double radius) const;  // of light that nothing has scattered
-  // Of a ray that passes the centre at a distance, where it leaves the ball.
+  double reduced_moment(int l, double radius) const;  // light that was not scattered
+  // Radiance and transmittance of a ray where it leaves the ball. `impact`: distance at which it passes the centre.
   double exit_radiance(double impact) const;
   double exit_transmittance(double impact) const;
 
  private:
   // A place on a chord: distance of the chord from the centre, and the way from its middle, in the direction of the light.
   double depth_from_face(double impact, double along) const;
-  // What each unknown (moment l at node i) adds to the radiance there.
+  // Contribution of each unknown (moment l at node i) to the radiance there.
   Eigen::RowVectorXd gathered(double impact, double along) const;
-  // What each unknown adds to the moments at that distance from the centre: a row for each.
+  // Contribution of each unknown to the moments at that distance from the centre: a row for each.
   Eigen::MatrixXd moment_rows(double radius) const;
 
   BallLight light_;

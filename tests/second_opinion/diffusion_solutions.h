@@ -13,13 +13,13 @@ struct Diffusion {
   double kappa() const { return 1 / (3 * sigma_tr()); }           // [m]
   double sigma_eff() const { return std::sqrt((1 - albedo) * sigma_t / kappa()); }
 
-  // A distance from an isotropic point of that power, in smoke without end.
+  // Mean radiance at a distance from an isotropic point source of this power, in infinite smoke.
   double around_point(double distance, double power) const {
     return power * std::exp(-sigma_eff() * distance) / (4 * pi * kappa() * distance) / (4 * pi);
   }
-  // Of an even source in smoke without end.
+  // Mean radiance of an even source in infinite smoke.
   double of_even_source(double source) const { return source / (1 - albedo); }
-  // In a slab between two vacua under Marshak's condition -kappa dL0/dn = L0/2, at a depth in it.
+  // Mean radiance at a depth in a slab between two vacua, with Marshak's condition -kappa dL0/dn = L0/2.
   double in_slab(double source, double thickness, double depth) const {
     const double s = sigma_eff(), half = 0.5 * s * thickness;
     return of_even_source(source) *

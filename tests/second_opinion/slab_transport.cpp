@@ -48,7 +48,7 @@ SlabTransport::SlabTransport(const SlabLight& light, int directions)
     for (int i = 0; i < directions; ++i)
       moments_.row(l) += 0.5 * weight_[i] * std::legendre(unsigned(l), mu_[i]) * (l % 2 ? difference_ : sum_).row(i);
 
-  // What comes in: (S + D) / 2 at the top, (S - D) / 2 at the bottom.
+  // Inflow: (S + D) / 2 at the top, (S - D) / 2 at the bottom.
   const Eigen::VectorXd far = (-light.thickness * rate_).array().exp();
   Eigen::MatrixXd faces(2 * directions, 2 * directions);
   faces << sum_ + difference_, (sum_ - difference_) * far.asDiagonal(), (sum_ - difference_) * far.asDiagonal(),

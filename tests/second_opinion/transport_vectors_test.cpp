@@ -1,5 +1,6 @@
-// Vectors of Zhou et al. 2008 that no renderer computes to their own accuracy: diffusion in closed form, slabs, a half space and a ball, by
-// solvers that are written for them. What the method's solvers make of the same cases is in tests/methods/compensated_ray_marching.
+// Vectors of Zhou et al. 2008 that no renderer computes to their own accuracy: diffusion in closed form, slabs, a half
+// space and a ball, by solvers that are written for them. Tests of the method's own solvers in these cases are in
+// tests/methods/compensated_ray_marching.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -139,7 +140,7 @@ Pairs ordinates_slab(const json& in, const json& e) {
   return p;
 }
 
-// What a layer scatters depends on its optical depth alone.
+// Scattering of a layer depends on its optical depth alone.
 Pairs uneven_slab(const json& in, const json& e) {
   const double sigma_t = number(in["sigma_t"]), height = number(in["height"]), top = number(in["density_top"]),
                slope = (number(in["density_bottom"]) - top) / height;

@@ -116,7 +116,7 @@ TEST_CASE("stress 03: tau 1e3, albedo 1", "[stress]") {
   check_equal(H * asymptote(100), through.total, 0.1);
 }
 
-// What a half space sends back; at tau 1e6 the slab lets nothing through.
+// Light that a half space reflects; at tau 1e6 the slab transmits nothing.
 TEST_CASE("stress 04: tau 1e6, albedo 0.999", "[stress]") {
   const double expected = airlight::test::vector_of("halfspace-H").at("expected").at("albedo_mu1").at("0.999");
   const auto back = radiance(World(slab(1e6, 0.999, false), Options{}), down, 1 << 16, {}, 41);

@@ -49,7 +49,7 @@ def belongs(gate, row):
 
 
 def gates_of(experiment, bounds):
-    """Those with a bound, and the lines of the bounds by row, which hold profile quick."""
+    """Gates with a bound, and the bounds by row, which hold for profile quick."""
     gates = [g for g in experiment.get("gate", []) if "at_most" in g or "at_least" in g]
     if not os.path.exists(bounds):
         return gates

@@ -90,7 +90,8 @@ TEST_CASE("stress 11: a light on the camera", "[stress]") {
 }
 
 TEST_CASE("stress 12: a light in the middle of a sphere of optical radius 100", "[stress]") {
-  // What escapes from the middle is, by reciprocity, what the middle sees of a white sky: all of it at albedo 1.
+  // Light that escapes from the middle is, by reciprocity, the light of a white sky at the middle: all
+  // of it at albedo 1.
   const auto ball = [](double albedo) { return medium(scene::Sphere{{0, 0, 0}, 1}, 100, albedo); };
   const auto seen = mean_radiance(World(scene_of({ball(1)}, {white()}), Options{}), from_the_middle, 256, {}, 120);
   check_equal(1, seen.total, 0.05);

@@ -140,7 +140,7 @@ TEST_CASE("stress 17: a scene scaled by 1e6, and one moved by 1e6", "[stress]") 
   }
 }
 
-// What has no area is removed at load; what is there twice is hit once; a sliver does not hurt.
+// Triangles without area are removed at load; duplicates are hit once; a sliver does not hurt.
 TEST_CASE("stress 20: zero-area, duplicate and sliver triangles", "[stress]") {
   const scene::TriangleMesh clean = scene::make_box({{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}});
   scene::TriangleMesh dirty = clean;

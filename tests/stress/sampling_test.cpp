@@ -120,7 +120,7 @@ TEST_CASE("stress 31: majorants of 0.9 of the truth void the render", "[stress]"
 }
 
 TEST_CASE("stress 32: uniforms 0 and 1 - ulp at every sampler", "[stress]") {
-  // What the generator can give lies strictly between.
+  // Numbers of the generator lie strictly between.
   CHECK(uniform53(0, 0) > 0);
   CHECK(uniform53(~0u, ~0u) < 1);
   CHECK(uniform32(0) > 0);

@@ -106,7 +106,7 @@ TEST_CASE("stress 09: g = 1e-12 and 1e-5 are isotropic within 3 g", "[stress]") 
     const auto scene = scene_with(scene::HenyeyGreenstein{g});
     // Both integrals are good to 1e-10 of themselves.
     CHECK(std::abs(deterministic::airlight(*scene, ray, infinity).radiance[0] / isotropic - 1) <= within + 2e-10);
-    // The same random numbers make nearly the same paths: no noise between them beyond what g itself moves.
+    // Equal random numbers make nearly equal paths: the only difference between them is what g itself changes.
     const auto a = radiance(World(scene, options), ray, 4096, {}, 91);
     const auto b = radiance(World(scene_with(scene::Isotropic{}), options), ray, 4096, {}, 91);
     check_equal(isotropic, a.orders[1], 0.05);

@@ -112,9 +112,9 @@ double greatest(const Film& film, const std::string& layer) {
   return most;
 }
 
-// What is wrong with `film`, which should be `expected` times `ratio` to `share` of its brightest pixel and, where it
-// is known, six standard errors (128 pixels of a sweep: 3e-7 of a false alarm). A picture holds nothing below 1e-45,
-// and full precision from 1.2e-38 on.
+// The difference, as text, between `film` and `expected` times `ratio`, where it exceeds `share` of the brightest pixel
+// and, if known, six standard errors (128 pixels of a sweep: 3e-7 of a false alarm). A picture holds nothing below
+// 1e-45, and full precision from 1.2e-38 on.
 std::string difference(const Film& film, const Film& expected, double ratio, const std::string& layer, double share,
                        bool dark) {
   const double most = greatest(expected, layer) * ratio;

@@ -111,7 +111,7 @@ TEST_CASE("stress: light and camera on and inside media", "[stress][touching]") 
                    truth = answer("deterministic", Point3(0.2, 0.3, 0.4), Point3(-0.3, 0.2, 0.1), s.table);
       if (inside.refused.empty() && renderer != "path_tracer") check_limit("ray_marcher", inside, truth);
     }
-    // Those that know no lamps, under the sky.
+    // Renderers that do not support lamps are tested under the sky.
     const std::string sky = "type = 'environment'\nradiance = 2";
     std::vector<std::string> under_the_sky = {"compensated_ray_marching"};
     if (gpu::test::device()) under_the_sky.push_back("compensated_ray_marching_gpu");

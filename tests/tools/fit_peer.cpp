@@ -1,5 +1,5 @@
-// What another program needs to minimise what our fit of Gaussians minimises: the same objective from the same start within the same bounds;
-// and our own minimisers, to be timed beside it. scripts/compare_lbfgsb builds and runs this.
+// Interface for another minimiser of our fit of Gaussians: the same objective from the same start within the same
+// bounds; and our own minimisers, to be timed beside it. scripts/compare_lbfgsb builds and runs this.
 //
 //   airlight_fit_peer SIZE OCTAVES GAUSSIANS THREADS    curl noise of SIZE^3 samples
 //

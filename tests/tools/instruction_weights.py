@@ -65,7 +65,7 @@ def mark_of(line):
 
 
 def blocks_of(lines, labels):
-    """Of a program the blocks as ranges of places, and by block the dominators, nearest first."""
+    """Blocks of a program as (begin, end) line numbers, and the dominators of each block, nearest first."""
     branches = {p: re.match(r"s_(c?)branch\S* (BB\d+)", line) for p, line in enumerate(lines)}
     begins = sorted({0} | set(labels.values()) | {p + 1 for p, branch in branches.items() if branch} - {len(lines)})
     begins = [b for b in begins if b < len(lines)]
@@ -94,7 +94,7 @@ def blocks_of(lines, labels):
 
 
 def weights(disassembly, has_marks):
-    """By mark and unit; copies of a mark are made one, of the mean of what they hold."""
+    """Instructions by mark and unit. Copies of a mark are merged into one with their mean."""
     lines, labels, loops = instructions(disassembly)
     marks = [mark_of(line) for line in lines]
     blocks, dominators = blocks_of(lines, labels)
@@ -105,7 +105,7 @@ def weights(disassembly, has_marks):
         return next((m for m in reversed(marks[slice(*blocks[block])]) if m is not None), None)
 
     def mark_before(block):
-        """Of the nearest block that all ways here lead through, in this loop or one around it."""
+        """Last mark of the nearest dominating block, in this loop or one around it."""
         begin, loop = blocks[block][0], loop_of[block]
         if not has_marks:
             return "loop" if loop else -1

@@ -1,5 +1,5 @@
-// What a Vulkan driver's compiler says of compute shaders: registers, spills, scratch, instructions. No device is needed
-// where the driver compiles for one that is not there (RADV_FORCE_FAMILY); scripts/shader_statistics builds and runs this.
+// Statistics of a Vulkan driver's compiler for compute shaders: registers, spills, scratch, instructions. No device is
+// needed if the driver compiles for an absent one (RADV_FORCE_FAMILY); scripts/shader_statistics builds and runs this.
 //
 //   pipeline_statistics FILE.spv...    one line per shader and statistic: file, name, value; separated by tabs
 #include <vulkan/vulkan.h>
@@ -29,7 +29,7 @@ std::vector<uint32_t> words_of(const std::string& path) {
   return words;
 }
 
-// What a shader binds in set 0, from its decorations, types and variables (SPIR-V specification, section 3).
+// Bindings of a shader in set 0, from its decorations, types and variables (SPIR-V specification, section 3).
 std::vector<VkDescriptorSetLayoutBinding> bindings_of(const std::vector<uint32_t>& words) {
   enum { type_image = 25, type_sampled_image = 27, type_pointer = 32, variable = 59, decorate = 71 };
   enum { block_as_buffer = 3, binding_decoration = 33, uniform = 2, uniform_constant = 0, storage_buffer = 12 };

@@ -190,7 +190,7 @@ def edges():
 
 
 def scales():
-    """The same fog in other units of length: what is culled must not depend on them (section 5.3)."""
+    """The fog of f100 in other units of length: culling must not depend on the unit (section 5.3)."""
     for unit, name in ((100, "f100_large"), (0.01, "f100_small")):
         table = [(tuple(unit * x for x in center), unit * width, c) for center, width, c in cloud(100, 2)]
         write_table(f"cloud_{name[5:]}", table)

@@ -182,7 +182,7 @@ def figure_7():
                 camera, target, 0.8, spot, fog(0.12), [ball, floor])
     fine_floor = surface("floor", "mesh", {"file": '"floor.off"', "transform": "{ scale = 0.01, translation = [0, -3, 0] }"}, 0.4)
     lamp = surface("shade", "mesh", {"file": '"shade.off"', "transform": "{ scale = 0.001, translation = [0, 3, 0] }"}, 0.5)
-    write_scene("fig7_shade", "The same by a point light in a shade, as the paper made its spot.", camera, target, 0.8,
+    write_scene("fig7_shade", "Figure 7 with a point light in a shade as its spot, as in the paper.", camera, target, 0.8,
                 point((0, 3, 0), (60, 60, 60)), fog(0.12), [ball, fine_floor, lamp])
 
 

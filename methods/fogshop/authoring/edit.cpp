@@ -9,8 +9,8 @@
 namespace airlight::fogshop::authoring {
 namespace {
 
-// What the places of the path take from each Gaussian; distances2(i, place) is the square of their distance, infinite
-// where there is none.
+// Erases a share of each Gaussian by the places of the path; distance2(i, place) is the square of their distance,
+// infinite if there is none.
 template <class F>
 std::vector<Id> erase_with(GaussianList& list, std::size_t places, const Eraser& eraser, F distance2) {
   std::vector<Id> ids;

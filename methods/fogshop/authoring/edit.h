@@ -23,7 +23,8 @@ struct Placement {
   Mat3 rotation = Mat3::Identity();
   double scale = 1;  // > 0
   Vec3 translation = Vec3::Zero();
-  // What a change of scale keeps: the optical depth through the centre (c -> c / scale), or the density (c as it is).
+  // Quantity that a change of scale keeps: the optical depth through the centre (c -> c / scale), or the
+  // density (c unchanged).
   enum class Keep { depth, density } keep = Keep::depth;
 };
 

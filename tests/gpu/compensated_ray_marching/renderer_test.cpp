@@ -101,7 +101,7 @@ DEVICE_TEST_CASE("compensated march on the device: surfaces, their shadows on sm
     compare(scene);
     compare(scene, single);
   }
-  // Of voxels, turned, and before a picture with depth; then none at all.
+  // Rotated voxels, without and with a picture with depth behind them. Then no smoke at all.
   scene->media[0].field = scene::GridPointer(uneven_voxels({-0.7, -0.4, -0.8}));
   for (const bool picture : {false, true}) {
     if (picture) scene->backdrops.push_back(backdrop_with_depths(26, 18));
@@ -122,7 +122,7 @@ DEVICE_TEST_CASE("compensated march on the device: other lights on surfaces in t
     return scene;
   };
   const auto dark = lit_by(scene::make_constant_environment(Rgb::Zero()));
-  // What was left out in the dark is prepared anew.
+  // Stages that were left out in the dark are prepared anew.
   CHECK(!device.prepare(dark, {device.settings(), small}, {1, {}})->next(lit_by(uneven(1)), {1, {}}));
   const auto prepared = device.prepare(lit_by(uneven(2)), {device.settings(), small}, {1, {}});
   for (const auto& scene : {lit_by(uneven(1)), dark, lit_by(uneven(0.3))}) {
@@ -218,7 +218,8 @@ DEVICE_TEST_CASE("compensated march on the device: suns that move, come and go, 
         const gpu::Traffic moved = context.traffic() - then;
         CAPTURE(objects, suns.size(), field.index());
         compare(picture(cpu, scene, few), prepared->render(view_of(*scene), {1, {}}).film);
-        // Of each direction where it is, its harmonics, its power: 20 floats and 4; where one moved, the nodes that it does not see.
+        // Upload per direction: the direction and its harmonics (20 floats), its power (4 floats). If a direction
+        // moved, also the nodes that it does not see.
         const long directions = 6 * 12 + long(suns.size()), nodes = objects ? 8 * 8 * 8 / 8 : 0;
         if (suns.size() <= before)
           CHECK(moved.bytes_up <= 4 * 24 * directions + long(suns.size()) * (nodes + 4) + 4 * 3 * 4);

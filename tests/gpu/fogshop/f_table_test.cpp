@@ -29,7 +29,7 @@ std::shared_ptr<scene::Scene> scene_named(const std::string& name) {
   return airlight::test::scene_named("fogshop/" + name, 24, 18);
 }
 
-// The same on the device: a constant medium of extinction `beta`, a light of 1 W/sr, one ray along +z.
+// Airlight on the device for a constant medium of extinction `beta`, a light of 1 W/sr, and one ray along +z.
 double on_device(gpu::Context& context, const fogshop::FTable& table, const fogshop::LightFromRay& light, double d_vp,
                  double beta) {
   fogshop::Model model;

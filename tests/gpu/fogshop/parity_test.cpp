@@ -43,7 +43,7 @@ void agree(const std::vector<const char*>& names) {
     for (Pairs given : {Pairs{{"variant", "paper"}}, Pairs{{"K", "24"}}, Pairs{{"erf", "precise"}},
                         Pairs{{"K", "12"}, {"extrapolate", "false"}},
                         Pairs{{"K", "13"}, {"extrapolate", "false"}, {"edges", "plain"}}}) {
-      given.emplace("erf", "erf10");  // the same approximation on both sides; `precise` differs by 3.3e-7
+      given.emplace("erf", "erf10");  // one approximation on both sides; `precise` differs by 3.3e-7
       agree(scene, given, 2.4e-5, 7e-6);
     }
   }
@@ -182,8 +182,8 @@ DEVICE_TEST_CASE("fogshop: what a scene has not costs no dispatch", "[gpu]") {
   CHECK(dispatches({}) == 0);
 }
 
-// Section 5.4. Which pixels are edges is a comparison of distances: one that lies at the bound to single precision may
-// differ, so the 99th percentile of a film of this size allows for a dozen.
+// Section 5.4. Edge pixels are found by comparing distances. A pixel at the bound may differ in single precision, so
+// the 99th percentile of a film of this size allows for a dozen.
 DEVICE_TEST_CASE("fogshop: low resolution, GPU agrees with CPU", "[gpu][thorough]") {
   const auto scene = std::make_shared<const scene::Scene>(scene::load_scene(
       AIRLIGHT_SOURCE_DIR "/experiments/scenes/fogshop/posts.toml", {{"film.width", "27"}, {"film.height", "19"}}));

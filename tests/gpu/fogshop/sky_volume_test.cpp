@@ -37,7 +37,7 @@ scene::Rendering render(const scene::Renderer& renderer, const ScenePointer& sce
   return airlight::test::render(renderer, scene, given);
 }
 
-// Of the airlight, the depth and the whole: 99th, 99.9th percentile and worst, kept as the greatest of all calls.
+// Greatest differences of all calls in airlight, transmittance and mean: 99th and 99.9th percentile, and worst.
 struct Differences {
   double p99 = 0, p999 = 0, worst = 0;
 

@@ -132,8 +132,8 @@ DEVICE_TEST_CASE("airlight of a constant medium under extreme inputs on the devi
   }
 }
 
-// Of an endless ray at depth 1 from the light, the airlight is NPSF / (e d^2) (Eq. 17). From 100 m: lights nearer to
-// the ray than 1e-9 m are taken as that far.
+// The airlight of an endless ray at depth 1 from the light is NPSF / (e d^2) (Eq. 17). The light is 100 m away, since
+// lights nearer to the ray than 1e-9 m are treated as if at 1e-9 m.
 DEVICE_TEST_CASE("limits of the NPSF on the device", "[gpu]") {
   for (const auto& [gamma, expected] : {std::pair(1e-10, 2.499999996188e9), {pi, 0.02207023608763}}) {
     const Point3 light(100 * std::sin(gamma), 0, 100 * std::cos(gamma));

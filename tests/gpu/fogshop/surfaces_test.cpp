@@ -201,7 +201,7 @@ DEVICE_TEST_CASE("fogshop: shadows of a surface on itself", "[gpu]") {
   }
 }
 
-// What the maps do not decide the tree of surfaces does.
+// Where the maps do not decide, the tree of surfaces does.
 DEVICE_TEST_CASE("fogshop: edges of shadows are exact whatever the maps' resolution", "[gpu]") {
   Scene scene = scene::load_scene(AIRLIGHT_SOURCE_DIR "/experiments/scenes/elephant_gaussians.toml",
                                   {{"film.width", "160"}, {"film.height", "120"}});

@@ -1,4 +1,4 @@
-// What a frame of the half-resolution march moves between host and device, and frames in parts.
+// Transfers of a frame of the half-resolution march between host and device, and frames in parts.
 #include <catch2/catch.hpp>
 #include <set>
 

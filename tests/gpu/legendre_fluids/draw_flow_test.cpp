@@ -132,7 +132,7 @@ DEVICE_TEST_CASE("legendre fluids on the device: systems of frames that nobody s
     CHECK(unseen > 1.25 * before);  // more than the first try takes
     REQUIRE(gpu::legendre_fluids::draw_flow(*picture, *flow));
     CHECK(picture->render(view, {1, {}}).counters.at("iterations") == unseen);
-    // What is no number in single precision has no solution.
+    // A value that is no number in single precision has no solution.
     REQUIRE(gpu::legendre_fluids::draw_flow(*picture, *dark));
     CHECK_THROWS_WITH(picture->render(view, none), Catch::Contains("left a residual of"));
   }
@@ -171,7 +171,7 @@ DEVICE_TEST_CASE("pictures of a flow: from where it lies, and prepared anew each
   const auto scene = scene_with(box_of(*flow, 1));
   const gpu::legendre_fluids::LegendreLight on_device;
   const legendre_fluids::LegendreLight on_processor;
-  const scene::Settings settings(on_processor.settings(), {});  // the same for both
+  const scene::Settings settings(on_processor.settings(), {});  // equal settings for both
   experiments::FlowPictures there(*scene, on_device, settings, 3, 1), here(*scene, on_processor, settings, 3, 1);
   for (int frame = 0; frame < 2; ++frame) {
     there.draw(*flow, folder.file("there.png"));
@@ -195,7 +195,7 @@ DEVICE_TEST_CASE("pictures of a flow: from where it lies, and prepared anew each
   CHECK_THROWS_AS(experiments::FlowPictures(empty, on_device, settings, 0, 1), Error);
 }
 
-// What rings below 0 around a blob is taken as 0, as the processor does, in a few stretches of each ray.
+// Densities that ring below 0 around a blob are taken as 0, as on the CPU, in a few stretches of each ray.
 DEVICE_TEST_CASE("legendre light on the device: a blob of a flow that rings below 0",
                  "[gpu][legendre_fluids][thorough]") {
   const auto flow = rising_blob(0);

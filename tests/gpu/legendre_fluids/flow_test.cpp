@@ -152,7 +152,7 @@ DEVICE_TEST_CASE("legendre fluids on the device: a warm step sends nothing and w
   CHECK(warm.allocations == 0);
   CHECK(warm.program_look_ups == 0);
   CHECK(warm.dispatches <= 300);
-  // What is asked for comes down once.
+  // Results that are asked for are downloaded once.
   before = traffic;
   flow->totals();
   flow->velocity(problem.box.lo);

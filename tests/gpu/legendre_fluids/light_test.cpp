@@ -20,7 +20,7 @@ using Catch::Contains;
 namespace {
 
 constexpr double bound = 3e-6;   // three times what is measured
-constexpr double bent = 3.5e-6;  // likewise, where light has kinks
+constexpr double bent = 3.5e-6;  // three times what is measured, where light has kinks
 
 using ScenePointer = std::shared_ptr<scene::Scene>;
 
@@ -118,7 +118,7 @@ DEVICE_TEST_CASE("legendre light on the device: surfaces behind and within the m
   compare("wall", scene, bound);
 }
 
-// What is below 0 is taken as 0, on rays and on the way of the light.
+// Densities below 0 are taken as 0, on rays and on the way of the light.
 DEVICE_TEST_CASE("legendre light on the device: densities that are below 0 in places",
                  "[gpu][legendre_fluids][thorough]") {
   const auto rough = [](const scene::TensorShape& n, unsigned seed, double mean, const Box& box = unit_box) {

@@ -152,7 +152,7 @@ DEVICE_TEST_CASE("legendre light on the device: the paper's systems before pictu
   compare("colours, from within", with_ends(scene, 0.05), paper("upwind", 5));
   scene = lit_scene(smoke(random_density({8, 8, 8}, 3), 1), {0, 1, 0}, {0, 0, -1}, 24, 20);
   compare("along an axis", with_ends(scene, 0.17), paper("upwind", 6));
-  // What nobody asks for does not come down, and the picture is the same.
+  // Layers that nobody asks for are not downloaded, and the picture does not change.
   const gpu::legendre_fluids::LegendreLight method;
   const auto prepared = method.prepare(scene, {method.settings(), paper("upwind", 6)}, {1, {}});
   scene::Execution some{1, {}};

@@ -45,8 +45,8 @@ Maps make(gpu::Context& context, const std::vector<scene::Medium>& media, const 
           std::make_unique<gpu::light_map::LightMaps>(context, on_device, media, layers, lights(), options, progress)};
 }
 
-// What two texels differ by at most: optical depths and series by the greatest of the map, curves of transmittance as they are, since
-// which nodes they keep may turn on rounding.
+// Greatest difference of two texels. Optical depths and series are relative to the greatest of the map. Curves of
+// transmittance are compared without scale, since rounding may decide which nodes they keep.
 double difference(const Options& o, const float* a, const float* b) {
   double most = 0;
   if (o.encoding != Encoding::avsm) {
@@ -109,7 +109,8 @@ DEVICE_TEST_CASE("light maps: texels of the device are those of the processor", 
         CHECK(make(context, scene->media, o).device->planes() == 0);
         continue;
       }
-      // Measured: 4.2e-7 and 7.5e-7 of slices and series. Which node of avsm goes, and which step of beer is empty, may turn on rounding.
+      // Measured: 4.2e-7 and 7.5e-7 for slices and series. Rounding may decide which node avsm removes,
+      // and which step of beer is empty.
       const bool avsm = encoding == Encoding::avsm, beer = encoding == Encoding::beer;
       agree(context, name, scene->media, o, beer ? 1.3e-5 : 1.3e-6, avsm ? 3e-3 : beer ? 1.6e-4 : 2.3e-6);
     }

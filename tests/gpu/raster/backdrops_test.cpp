@@ -64,7 +64,7 @@ radiance = [[1, 0.2, 0.1], [0.2, 0.3, 1]]
   return scene;
 }
 
-// Of the two films, layer by layer, on a cold and on a warm frame.
+// Compares the two films, layer by layer, on a cold and on a warm frame.
 void compare(const scene::Renderer& processor, const scene::Renderer& device, const scene::Scene& content,
              const std::map<std::string, std::string>& given) {
   const auto scene = std::make_shared<const scene::Scene>(content);

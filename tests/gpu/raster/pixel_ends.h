@@ -1,4 +1,4 @@
-// What the device has found in a pixel, as the processor knows it.
+// The hit that the device has found in a pixel, as a hit of the CPU.
 //
 // The device tells the primitive and the distance as a float; here the ray meets that very primitive in double
 // precision again, so that points lie on their surface to rounding and shadow rays start where the CPU's own would.

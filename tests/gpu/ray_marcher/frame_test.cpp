@@ -1,4 +1,4 @@
-// What a frame of the ray marcher moves between host and device.
+// Transfers of a frame of the ray marcher between host and device.
 #include <catch2/catch.hpp>
 #include <set>
 

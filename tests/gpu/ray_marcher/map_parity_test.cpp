@@ -49,7 +49,7 @@ DEVICE_TEST_CASE("ray marcher: meshes behind media with maps on the GPU", "[gpu]
   agree("elephant", scene, view_of(*scene), "slices");
 }
 
-// What is made once is not made again, and its stages say so.
+// Maps that are made once are not made again, and the stages say so.
 DEVICE_TEST_CASE("ray marcher: maps on the GPU are a stage of the preparation", "[gpu][ray_marcher][light_map]") {
   const auto scene = test::scene_named("plume_sun", 8, 6);
   const gpu::ray_marcher::RayMarcher marcher;

@@ -33,7 +33,7 @@ void agree(const std::vector<Given>& all) {
       CAPTURE(name, given["spacing"], given["step"]);
       gpu::test::agree(name, cpu.film, gpu.film, {7e-6},
                        {"airlight", "transmittance", "surface"});  // measured: 2.5e-6 at worst
-      // The same steps: what rounding makes of a ray along a cut apart.
+      // The steps are equal, except for rounding on rays along a cut.
       for (const char* counter : {"rays", "steps", "shadow_rays", "occlusion_rays"}) {
         if (given.count("early_exit") && counter == std::string("steps")) continue;  // the CPU samples, then leaves out
         CAPTURE(counter);

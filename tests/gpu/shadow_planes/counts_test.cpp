@@ -20,7 +20,7 @@ struct Counted {
   int points = 0, crossed = 0;  // m > 0
 };
 
-// Of all pixels of a parallel view, and at the cameras that look from some of their origins.
+// Compares m on device and CPU for all pixels of a parallel view, and for cameras at some of their origins.
 Counted compare(gpu::Context& context, const std::shared_ptr<const scene::Scene>& scene, const scene::View& view,
                 const Point3& light) {
   const auto occluders = std::make_shared<const shadow_planes::Occluders>(scene);

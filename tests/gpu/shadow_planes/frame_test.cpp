@@ -1,4 +1,4 @@
-// What a frame of shadow planes reads on the device.
+// Reads of a frame of shadow planes on the device.
 #include <cstdlib>
 
 #include "tests/gpu/shadow_planes/pictures.h"

@@ -1,4 +1,4 @@
-// What a device holds of crossings, lists and loops, and what is left out of its work.
+// Capacity of a device for crossings, lists and loops, and work that is left out.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -87,7 +87,7 @@ DEVICE_TEST_CASE("shadow planes: a hundred thousand edges on the device", "[gpu]
     CHECK_THROWS_AS(render(gpu::shadow_planes::ShadowPlanes(), media, given), Unavailable);
 }
 
-// What is crossed at the ends of a plane: `times` may be any number, infinity too, which is no level.
+// Crossings at the ends of a plane: `times` may be any number, infinity too, which is no level.
 DEVICE_TEST_CASE("shadow planes: a plane is crossed within its mesh, however far out", "[gpu][shadow_planes]") {
   const gpu::Use use(context);
   const gpu::test::ShaderFolder shaders(R"(layout(local_size_x = LOCAL_SIZE_X) in;

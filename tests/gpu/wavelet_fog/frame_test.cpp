@@ -1,4 +1,4 @@
-// What a frame of fogmaps keeps, promises and refuses on the device.
+// Frames of fogmaps on the device: kept state, promises and refusals.
 #include <fmt/format.h>
 
 #include <cmath>

@@ -1,4 +1,5 @@
-// What frames cost on the device that is there, by the processor's user time: on a software renderer, however busy the machine is.
+// Cost of frames on the available device, by the processor's user time: with a software renderer, for
+// any load of the machine.
 //   airlight_tests "wavelet fog: times*"
 #include <sys/resource.h>
 
@@ -19,7 +20,8 @@ double user_seconds() {
   return double(usage.ru_utime.tv_sec) + 1e-6 * double(usage.ru_utime.tv_usec);
 }
 
-// As those of wavelet_fog/map_size: 64 m a side of any size, drawn smooth, in patches, or with hard edges.
+// A fogmap like those of wavelet_fog/map_size: 64 m a side, of any size in pixels, drawn smooth, in
+// patches, or with hard edges.
 std::shared_ptr<scene::Fogmap> drawn(const std::string& kind, int size) {
   wavelet_fog::authoring::Canvas canvas(size, size, 64. / size);
   wavelet_fog::authoring::Canvas::Noise noise;

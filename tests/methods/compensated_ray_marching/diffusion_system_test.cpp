@@ -85,7 +85,8 @@ TEST_CASE("diffusion at the centres: conjugate gradients and LSQR", "[compensate
     const LeastSquares warm = solve_least_squares(system, exact, 100, 1e-6, solver);
     CHECK(warm.iterations <= 1);
   }
-  // The same steps but for rounding, of which four have little; what LSQR says that is left is left.
+  // CG and LSQR take equal steps up to rounding, which is small after four steps. The residual that LSQR
+  // estimates is the true residual.
   for (const auto& [cg, lsqr] : {std::pair(LeastSquaresSolver::cg, LeastSquaresSolver::lsqr),
                                  std::pair(LeastSquaresSolver::cg_scaled, LeastSquaresSolver::lsqr_scaled)}) {
     const LeastSquares a = solve_least_squares(system, zero, 4, 0, cg),

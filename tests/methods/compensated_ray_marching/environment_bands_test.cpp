@@ -15,7 +15,7 @@ using compensated_ray_marching::EnvironmentBands;
 
 namespace {
 
-// That counts projections.
+// Environment bands that count projections.
 EnvironmentBands counted(int order, int& count) {
   return {order, [order, &count](const std::shared_ptr<const scene::EnvironmentMap>& map) {
             ++count;

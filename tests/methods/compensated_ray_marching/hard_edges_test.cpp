@@ -43,7 +43,8 @@ void no_light_is_made(const std::vector<std::pair<double, const char*>>& depths_
                       cube = Box{{-1, -1, -1}, {1, 1, 1}};
   for (const scene::Region& region : {ball, box, cube})
     for (const auto& [sigma_t, cells] : depths_and_cells) {
-      // Seconds each: cells as deep as at 5, two or four times as many along a side. Of the boxes the cube has most of them.
+      // These cases take seconds each: cells as deep as at a depth of 5 need two or four times as many along a side.
+      // The cube has more cells than the other box, which is skipped.
       if (sigma_t == 20 && std::holds_alternative<Box>(region) && std::get<Box>(region).hi[0] < 1) continue;
       CAPTURE(region_name(region), sigma_t);
       const Given given{{"cells", cells}};

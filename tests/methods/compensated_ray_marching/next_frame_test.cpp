@@ -138,7 +138,7 @@ TEST_CASE("compensated march: a solution at other centres is a weighted mean, at
   CHECK(within > 10);
   CHECK(beyond > 10);
   CHECK(crm::at_nodes(at_grid, 0, at_grid.nodes, 1).isApprox(at_grid.of_channel[0]));
-  // What is the same but for its place takes its values along.
+  // A field that is equal but for its place takes its values along.
   std::vector<scene::Gaussian> along = puffs().gaussians;
   for (scene::Gaussian& g : along) g.center += Vec3(0.3, 0.1, 0);
   CHECK(crm::at_centres(last, 1, along) == Eigen::Vector3d(2, 5, -1));

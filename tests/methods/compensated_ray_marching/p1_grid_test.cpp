@@ -64,7 +64,8 @@ TEST_CASE("diffusion on a grid: slabs, to second order", "[compensated_ray_march
   }
 }
 
-// Of a source that has a direction and no mean the solution is odd: C sinh(s (z - T/2)), C = kappa e J1 / (sinh(sT/2)/2 + kappa s cosh(sT/2)).
+// For a source with a direction and without a mean the solution is odd: C sinh(s (z - T/2)), C = kappa e J1 /
+// (sinh(sT/2)/2 + kappa s cosh(sT/2)).
 TEST_CASE("diffusion on a grid: a source with a direction", "[compensated_ray_marching]") {
   const Diffusion d{2, 0.9, 0.4};
   const double thickness = 3, along = 0.7, s = d.sigma_eff(), half = s * thickness / 2;
@@ -125,7 +126,7 @@ TEST_CASE("diffusion on a grid: a point in smoke without end, an even source in 
   }
 }
 
-// What is made is absorbed or flows out, cell by cell and over the box.
+// Emitted light is absorbed or flows out, cell by cell and over the box.
 TEST_CASE("diffusion on a grid: light is conserved", "[compensated_ray_marching]") {
   const OrdinateGrid grid{{6, 5, 7}, Vec3(0.3, 0.25, 0.4)};
   const Eigen::ArrayXd extinction = uneven(grid);

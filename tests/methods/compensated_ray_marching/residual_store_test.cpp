@@ -13,7 +13,7 @@ using namespace airlight::compensated_ray_marching;
 
 namespace {
 
-// Of a turned grid; some of it without any level.
+// A residual on a rotated grid; `empty`: parts of the grid have no level at all.
 scene::Residual rough(const Eigen::Vector3i& size, bool clamped, bool empty = false) {
   scene::Residual residual;
   residual.layout.size = size;
@@ -52,7 +52,7 @@ TEST_CASE("stores of a residual: the same everywhere", "[compensated_ray_marchin
         const double value = bricks.at(x);
         CAPTURE(size.transpose(), clamped, sample.transpose());
         REQUIRE(hash.at(x) == Approx(value).epsilon(1e-13).margin(1e-14));
-        // Of levels up to 127 steps, each rounded to a float.
+        // Error of levels of up to 127 steps, each rounded to a float.
         REQUIRE(std::abs(grid.at(x) - value) <= 127 * residual.step * std::exp2(-24));
         REQUIRE(any.at(x) == grid.at(x));
         seen += value != 0;

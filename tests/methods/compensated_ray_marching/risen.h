@@ -4,7 +4,7 @@
 
 namespace airlight::test {
 
-// What has risen and grown by shares of `step`.
+// Smoke that has risen and grown by shares of `step`.
 inline scene::GaussianSum risen(scene::GaussianSum sum, double step) {
   for (scene::Gaussian& g : sum.gaussians) {
     g.center += Vec3(0.3, 1, -0.2) * step * (0.5 + g.width);

@@ -1,5 +1,5 @@
-// A slab between two vacua under isotropic light, by the solver of boxes: two axes without end. What is between its nodes is integrated
-// along single directions.
+// A slab between two vacua under isotropic light, by the solver for boxes: two axes are endless. Values between nodes
+// are integrated along single directions.
 #pragma once
 #include <cmath>
 #include <functional>

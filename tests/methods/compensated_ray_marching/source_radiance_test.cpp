@@ -100,7 +100,7 @@ TEST_CASE("source radiance in harmonics: the depths are exact, the exponential a
     CHECK(ours < 0.02);
     CHECK(squared < 0.03);
     CHECK(linear < 0.12);
-    // The same light from behind: a wrong sign of (-1)^l would pass without a phase function alone.
+    // Light from behind: without a phase function a wrong sign of (-1)^l would pass.
     const std::vector<Rgb> turned = c.source(Transmittance::directional, 32).at(c.x);
     if (c.phase[1] != 0) {
       std::vector<Rgb> wrong = turned;

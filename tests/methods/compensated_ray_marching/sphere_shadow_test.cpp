@@ -41,7 +41,7 @@ HarmonicExponential series() {
 TEST_CASE("shadows of spheres: visibility in closed form", "[compensated_ray_marching]") {
   const scene::GaussLegendre rule = scene::gauss_legendre(16);
   for (const double angle : {0.0, 0.01, 0.4, 1.0, pi / 2, 2.0, pi}) {
-    // Of what is visible, cosines from -1 to that of the angle.
+    // Expected coefficients of the visibility: integrals over cosines from -1 to the cosine of the angle.
     const std::vector<double> zonal = visible_zonal(6, std::cos(angle));
     for (int l = 0; l < 6; ++l) {
       double sum = 0;

@@ -203,7 +203,7 @@ class StressScenes {
   }
 };
 
-// What holds of every picture of the list, and what its row asks for; of the grid unless `paper`.
+// Checks the rules for every picture of the list, and the rules of its row; for the variant grid unless `paper`.
 inline void check_stress(const StressScene& s, const scene::Film& film, bool paper) {
   const std::vector<float>&mean = film.layer("mean"), &airlight = film.layer("airlight"),
         &surface = film.layer("surface"), &left = film.layer("transmittance");

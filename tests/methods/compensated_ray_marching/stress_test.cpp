@@ -47,7 +47,8 @@ TEST_CASE("compensated march, stress list: voxels' transmittances are those of t
     if (s.row != 12 && s.row != 13 && s.row != 18) continue;
     if (s.given.count("residual")) continue;
     const scene::Film film = picture(method, s.scene, {{"cells", "4"}, {"slices", "1024"}, {"multiple", "none"}});
-    // One density throughout: equal slices have no error. Else that of midpoints at the kinks between voxels.
+    // If the density is constant, equal slices have no error. Otherwise the error is that of midpoints
+    // at the kinks between voxels.
     const bool even = s.what.starts_with("1 x 1 x 1, clamped") || s.row == 18;
     double worst = 0;
     int crossed = 0;
@@ -60,7 +61,7 @@ TEST_CASE("compensated march, stress list: voxels' transmittances are those of t
       }
     CAPTURE(s.row, s.what, worst);
     CHECK(crossed > 3);
-    // Of a fit, half a level of its residual.
+    // The error of fitted smoke includes half a level of its residual.
     CHECK(worst < (even ? 1e-6 : 2e-4) + (s.what.ends_with("fitted") ? 1e-3 : 0));
   }
 }

@@ -26,7 +26,8 @@ const Given paper{{"variant", "paper"}};
 
 TEST_CASE("compensated march: a ball's shadow on the ground in an even light, in closed form",
           "[compensated_ray_marching]") {
-  // What a ball takes of the irradiance on a plane that sees all of it at a distance d, at an angle from the normal: (R/d)^2 cos.
+  // Share of a ball in the irradiance on a plane that sees all of it at a distance d, at an angle from
+  // the normal: (R/d)^2 cos.
   const double radius = 0.6, height = 1.5;
   auto scene = in_white(puffs(), 0);
   const bool smoke = GENERATE(false, true);

@@ -102,7 +102,7 @@ TEST_CASE("the jitter is perpendicular to the stroke and below 1/a", "[fogshop][
   CHECK(std::abs(square - r2 / 2) < 4 * r2 / std::sqrt(12 * n));
   CHECK(mean.norm() < 4 * std::sqrt(r2 / 2 / n));
   CHECK(greatest > 0.99 / 2.5);
-  // The same seed gives the same fog, another one another; none without jitter.
+  // An equal seed gives an equal fog, another seed another fog. Without jitter there is no displacement.
   GaussianList again, other, plain;
   for (GaussianList* l : {&again, &other, &plain}) l->begin();
   paint(again, op);

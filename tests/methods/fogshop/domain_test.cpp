@@ -106,7 +106,7 @@ TEST_CASE("a picture says where the published approximations may be off", "[fogs
   finish(*sky);
   CHECK_THAT(warning(sky, {}), Catch::Contains("Eq. 28 may be off"));
   CHECK(warning(sky, {{"environment_airlight", "volume"}}) == "");
-  // What no warning is given of is off by less than what one would say.
+  // Without a warning the error is below the bound that a warning would state.
   const auto truth = deterministic::make_renderer();
   for (const double width : {0.1, 0.3, 1.0})
     for (const double depth : {0.01, 0.3, 1.15}) {
@@ -117,7 +117,7 @@ TEST_CASE("a picture says where the published approximations may be off", "[fogs
     }
 }
 
-// What the tables show of the paper's errors is within the domain where it is not refused.
+// The tables show the paper's errors for scenes within the domain, which are not refused.
 TEST_CASE("no scene of the experiments is refused for its widths", "[fogshop][domain]") {
   int seen = 0;
   for (const auto& file : std::filesystem::recursive_directory_iterator("experiments/scenes/fogshop")) {

@@ -48,9 +48,8 @@ TEST_CASE("single scattering of a sky at the middle of a ball, by path tracing",
   }
 }
 
-// What the NPSF is exact for: point lights inside an endless homogeneous medium. A shell of them, weighted so that it
-// is a uniform sky of radiance 1 (Gauss points in gamma = pi x^2), gives T e^-T sqrt(4 pi) g_0(T). False alarms as
-// above.
+// The NPSF is exact for point lights inside an endless homogeneous medium. A shell of them, weighted so that it is a
+// uniform sky of radiance 1 (Gauss points in gamma = pi x^2), gives T e^-T sqrt(4 pi) g_0(T). False alarms as above.
 TEST_CASE("Eq. 28 by depth is a shell of point lights, by path tracing", "[fogshop]") {
   const scene::GaussLegendre rule = scene::gauss_legendre(10);
   for (const double T : {0.2, 1.5}) {

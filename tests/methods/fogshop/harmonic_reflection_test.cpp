@@ -158,8 +158,8 @@ TEST_CASE("convolution with a delta is the identity", "[fogshop]") {
     }
 }
 
-// Eq. 20 in full against quadrature over the sphere: incident light of limited bands, with and without visibility. What
-// is compared is the harmonic form, so the reflectance enters as its projection.
+// Eq. 20 in full against quadrature over the sphere: incident light of limited bands, with and without visibility. The
+// harmonic form is compared, so the reflectance enters as its projection.
 TEST_CASE("reflection of harmonics is the integral over directions", "[fogshop]") {
   const scene::Material lambert = scene::Lambert{Rgb(0.9, 0.5, 0.1)};
   const scene::Material phong = scene::Phong{Rgb::Constant(0.3), Rgb(0.2, 0.4, 0.6), 5};

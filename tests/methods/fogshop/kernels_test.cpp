@@ -78,7 +78,7 @@ TEST_CASE("depths along lines", "[fogshop]") {
   }
 }
 
-// What culling loses stays below n thresholds, at every scale of the scene.
+// The loss by culling stays below n thresholds, at every scale of the scene.
 TEST_CASE("culling by depth loses what it says", "[fogshop]") {
   Random random{std::mt19937(4)};
   for (double scale : {0.01, 1.0, 100.0}) {

@@ -112,7 +112,7 @@ TEST_CASE("a wall reflects the sky onto what lies before it", "[fogshop]") {
   for (int c = 0; c < 3; ++c) {
     // Half a sky in 6 bands of harmonics, and the spiral's error.
     CHECK(std::sqrt(4 * pi) * once[0][c] == Approx(rho[c] * pi / 4).epsilon(0.01));
-    // What comes back from the patch is next to nothing.
+    // Light that comes back from the patch is next to nothing.
     CHECK(twice[0][c] == Approx(once[0][c]).epsilon(1e-3));
   }
   point.normal = -point.normal;  // its inner side
@@ -165,7 +165,7 @@ TEST_CASE("a convex mesh does not shadow itself", "[fogshop]") {
     for (int n = 1; n < 25; ++n) CHECK(v[n] == 0);
     CHECK(transfer.visibility(scene, {middle, -normal, 0, t}).empty());  // seen from inside
   }
-  // The same picture, then, with and without.
+  // So the pictures with and without radiance transfer are equal.
   const scene::Film plain = render(scene, {{"reflectance", "npsfT"}});
   const scene::Film shadowed = render(scene, {{"reflectance", "npsfT"}, {"prt", "true"}});
   double brightest = 0;

@@ -16,7 +16,7 @@ struct StressCase {
   airlight::scene::Gaussian gaussian() const { return {b, 1 / a, c}; }
 };
 
-// Of one Gaussian the depth of the ray along +z from the origin.
+// Depth of one Gaussian along a ray in direction +z from the origin.
 struct DepthCase {
   double a, c;  // 1/width, amplitude
   airlight::Point3 b;

@@ -1,4 +1,5 @@
-// What makes the confined space stable, in any box. Its numbers are those of the oracle vectors (experiments/verify).
+// Properties that make the confined space stable, in any box. Its numbers are those of the oracle vectors
+// (experiments/verify).
 #include <catch2/catch.hpp>
 #include <cmath>
 

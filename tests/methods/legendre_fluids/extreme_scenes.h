@@ -41,8 +41,9 @@ inline std::vector<ExtremeLight> extreme_lights() {
   return all;
 }
 
-// Of a picture by rays: numbers, none below 0 or above what one scattering of light of irradiance 1 can send by an albedo of 0.8, equally
-// in all directions: what the ray absorbs, 1 - exp(-depth), times 0.8 / (4 pi). To the rounding of a film.
+// Checks a picture by rays: values are finite, not below 0, and at most the light that single scattering can send, up
+// to rounding of a film. The bound is the ray's absorption 1 - exp(-depth), times 0.8 / (4 pi): irradiance 1 and albedo
+// 0.8, equal in all directions.
 inline void check_light(const ExtremeLight& given, const scene::Film& film) {
   CAPTURE(given.row, given.depth);
   const auto& airlight = film.layer("airlight");
@@ -63,7 +64,8 @@ inline void check_light(const ExtremeLight& given, const scene::Film& film) {
   for (const float v : transmittance) CHECK(v == 1);
 }
 
-// Of a picture by the paper's systems, which may be off by all of the light, clamped at 0: numbers, and nothing where there is nothing.
+// Checks a picture by the paper's systems, whose error can be as large as all of the light: values are finite, clamped
+// at 0, and 0 without density.
 inline void check_paper_light(const ExtremeLight& given, const scene::Film& film) {
   CAPTURE(given.row, given.depth);
   for (const auto& [layer, values] : film.layers)

@@ -24,7 +24,7 @@ FlowProblem warm_blob(int dimensions) {
   return problem;
 }
 
-// Of the velocities on a lattice of 21 points along an axis, relative.
+// Relative difference of the velocities, or densities, on a lattice of 21 points along an axis.
 double difference(const scene::Flow& a, const scene::Flow& b, const FlowProblem& p, bool of_density = false) {
   double squares = 0, all = 0;
   for (int i = 0; i <= 20; ++i)

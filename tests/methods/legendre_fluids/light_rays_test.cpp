@@ -79,7 +79,7 @@ TEST_CASE("legendre light: an even box is a closed form, to the smallest depth",
       CAPTURE(sigma, with);
       CHECK(film.layer("airlight")[0] == Approx(expected).epsilon(2e-7));
       CHECK(film.layer("transmittance")[0] == Approx(std::exp(-2 * sigma)).epsilon(2e-7));
-      // The same as a homogeneous medium in a box; and half of it in a region that leaves half.
+      // Equals a homogeneous medium in a box. A region that cuts off half of the box leaves half of the depth.
       scene->media[0].field = scene::Homogeneous{1};
       scene->media[0].region = unit_box;
       CHECK(picture(method, scene).layers == film.layers);

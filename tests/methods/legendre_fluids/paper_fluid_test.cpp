@@ -75,7 +75,7 @@ TEST_CASE("legendre fluids, paper: what its Laplacian lacks", "[legendre_fluids]
   CHECK(error(x - 1e-3 * laplacian(x), c) < 1e-11);
 }
 
-// What is constant along y is a problem in one dimension.
+// A problem that is constant along y has one dimension.
 TEST_CASE("legendre fluids, paper: implicit diffusion without walls amplifies", "[legendre_fluids]") {
   struct Row {
     int n;

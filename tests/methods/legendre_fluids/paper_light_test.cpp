@@ -26,7 +26,8 @@ Given paper(const std::string& closure, int n, Given more = {}) {
   return more;
 }
 
-// Of the image, mean of two densities of 4^3 coefficients, or n x n x 1 in a scene that is the same for all z.
+// Relative error of the image: mean over two densities of 4^3 coefficients, or of n x n x 1 in a scene
+// that does not depend on z.
 double error_of(const Given& settings, double depth, const scene::TensorShape& shape, const Vec3& light,
                 const Vec3& view) {
   double sum = 0;
@@ -191,8 +192,7 @@ TEST_CASE("legendre light: what the systems cannot do is refused by name", "[leg
   CHECK(method.supports(scene, {method.settings(), paper("upwind", 32)}).empty());
   refused(paper("least_squares", 32), "n = 32: a dense system of 32768 unknowns, expected at most 1728");
   refused(paper("upwind", 13, {{"solver", "dense"}}), "dense system of 2197 unknowns");
-  scene.media[0].field =
-      random_density({2, 2, 1}, 1);  // the same for all z: 32^2 unknowns where nothing moves along it
+  scene.media[0].field = random_density({2, 2, 1}, 1);  // constant along z: 32^2 unknowns where nothing moves along it
   refused(paper("least_squares", 32), "32768");
   scene.lights = {scene::DirectionalLight{Vec3(1, 0, 0), Rgb::Ones()}};
   scene.camera.forward = Vec3(0.6, 0.8, 0);

@@ -21,7 +21,7 @@ using namespace shadow_planes_test;
 
 namespace {
 
-// What the numbers of the input leave undetermined, in units of the machine's precision.
+// Error through the rounding of the input, in units of the machine's precision.
 double conditioning(double k, double T, double h, double x0, double x1) {
   const double near = std::isinf(x1) ? 0 : std::max({std::abs(x0), std::abs(x1), std::abs(T)}) / (x1 - x0);
   return 1 + k * (x0 + std::hypot(x0 - T, h)) + near;

@@ -51,7 +51,7 @@ TEST_CASE("shadow planes: media one by one with a stencil", "[shadow_planes]") {
   const Given fine = {{"edge_split", "64"}, {"boundary_cells", "64"}};
   const scene::Rendering stencil = render(scene, with(with(paper, {{"shadows", "stencil"}}), fine));
   CHECK(relative_l2(stencil.film, counted.film) < 1e-5);  // one convex occluder: any order will do, finely cut
-  // What is drawn is what is lit within a medium: no plane in front of one, none behind.
+  // Lit parts are drawn only within a medium: none in front of one, none behind.
   const ShadowVolumes shadows(std::make_shared<Occluders>(scene), scene::ball(scene->lights[0])->center);
   int drawn = 0, in_front = 0;
   std::vector<Crossing> crossings;

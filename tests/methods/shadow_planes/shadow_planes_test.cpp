@@ -105,7 +105,7 @@ TEST_CASE("shadow planes: the elephant agrees with the deterministic reference",
   check(scene);
 }
 
-// What the paper calls shadow in shadow: without counting, light is taken away once for every layer.
+// The paper's "shadow in shadow": without counting, light is subtracted once for every layer.
 TEST_CASE("shadow planes: a signed sum is wrong where shadows overlap", "[shadow_planes]") {
   const auto scene = boxes();
   const shadow_planes::ShadowPlanes method;

@@ -49,7 +49,7 @@ TEST_CASE("shadow planes: surfaces on the way through their edges", "[shadow_pla
   CHECK(before.count({-5, 0, 0}) == 2);
   CHECK(before.count({0, 0, 0}) == 1);
   CHECK(before.count({2, 0, 0}) == 0);
-  // As high as a face: what it hides does not change.
+  // A light as high as a face: the region that the face hides does not change.
   const ShadowVolumes level = around_box({5, 1, 0});
   CHECK(level.count({-5, 1.01, 0}) == 0);
   CHECK(level.count({-5, 0.99, 0}) == 2);

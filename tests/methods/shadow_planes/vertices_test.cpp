@@ -89,7 +89,7 @@ TEST_CASE("shadow planes: triangles of a medium's boundary hold its points", "[s
 // Second order in the step of the geometric progression: levels span the logarithm of a range that grows slowly.
 TEST_CASE("shadow planes: finer planes at vertices converge to pixels", "[shadow_planes]") {
   const auto scene = box_in_fog();
-  // What is seen of the box has its own, constant error.
+  // The visible part of the box has its own, constant error.
   scene->camera = scene::look_at({0.5, -0.6, 5}, {0.2, -0.5, 0}, {0, 1, 0});
   scene->camera.vertical_fov = 0.25;
   const scene::Film expected = render(scene, {{"shadows", "stencil"}, {"edge_split", "16"}}).film;
@@ -207,7 +207,7 @@ TEST_CASE("shadow planes: at vertices, what there is not and extremes", "[shadow
   const auto scene = two_media();
   CHECK_THROWS_WITH(render(scene, with(by_vertices, {{"edge_split", "4096"}, {"plane_levels", "4096"}})),
                     Catch::Contains("fewer plane_levels"));
-  // What one medium may hold is too much for many, and six lights.
+  // A size that one medium may have is too much for many media and six lights.
   const auto many = two_media();
   many->name = "many";
   many->lights.resize(6, many->lights[0]);

@@ -1,4 +1,4 @@
-// What the method must keep to, ray by ray: identities between variants, bounds, reconstruction.
+// Rules for the method, ray by ray: identities between variants, bounds, reconstruction.
 #include <catch2/catch.hpp>
 
 #include "methods/wavelet_fog/leveled_fog.h"

@@ -116,7 +116,7 @@ TEST_CASE("wavelet fog: a bound below the error of a block asks for its cells", 
   for (const double most : {0.49, 0.3, 0.01}) CHECK(depth(most) == Approx(0.8).epsilon(1e-12));
 }
 
-// A ramp is the same on every grid over whole steps. What a level leaves out is the way beyond its reach, length mu^m.
+// A ramp is equal on every grid over whole steps. A level leaves out the way beyond its reach, length mu^m.
 TEST_CASE("wavelet fog: the m-th level of details reaches mu^m of the way", "[wavelet_fog]") {
   Coefficients c{{{0, 0}, {64, 64}}, std::vector<double>(64 * 64, 0.0)};
   for (std::size_t at = 0; at < c.values.size(); ++at) c.values[at] = 0.01 * double(at % 64);  // a ramp along u

@@ -165,7 +165,7 @@ TEST_CASE("sun: in even fog under a flat top the light is a closed form", "[wave
     }
 }
 
-// What is lit may be as thin as 1e-8 of a cell.
+// The lit part may be as thin as 1e-8 of a cell.
 TEST_CASE("sun: fog of any extinction sends back what the quadrature says", "[wavelet_fog][sun]") {
   auto fog = std::make_shared<scene::Fogmap>();
   fog->map = scene::SplineMap(2, {{0, 0}, {4, 4}},
@@ -221,7 +221,7 @@ TEST_CASE("sun: every layer is that of the quadrature, and their sum; threads ch
     CHECK(relative_l2(film, truth, layer) <= 2e-5);
   }
   CHECK(picture(method, scene, given, 3).layers == film.layers);
-  // What the variant makes of the transmittance does not reach the sun, which has its own way.
+  // The variant's error in transmittance does not affect the sun, which has its own way.
   Given coarse = given;
   coarse["variant"] = "tele";
   const scene::Film other = picture(method, scene, coarse, 0);

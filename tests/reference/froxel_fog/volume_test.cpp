@@ -132,7 +132,7 @@ TEST_CASE("froxel fog: filters weigh 1 and keep a constant", "[froxel_fog]") {
                      : 0;
           CHECK(one.column(x, y)[k].light[1] == Approx(expected).margin(1e-7));
           sum += one.column(x, y)[k].light[1];
-          // What is linear stays as it is away from the border.
+          // Linear values do not change away from the border.
           if (x >= reach && x < 9 - reach && y >= reach && y < 11 - reach)
             CHECK(one.column(x, y)[k].media[2] == Approx(x + 2 * y).epsilon(1e-6));
         }

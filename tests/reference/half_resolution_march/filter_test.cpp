@@ -69,8 +69,8 @@ TEST_CASE("half-resolution march: the blur of a point is a Gaussian of weight 1"
   CHECK(sum == Approx(1).margin(rounding));
 }
 
-// Two halves, 1 before the edge and 0 behind it: the pixel before it keeps its own half's share of the weights. Those of the other half
-// are exp(-(dz / edge)^2) times what they would be.
+// Two halves, 1 before the edge and 0 behind it. The pixel before the edge keeps its own half's share of the weights.
+// The weights of the other half are multiplied by exp(-(dz / edge)^2).
 TEST_CASE("half-resolution march: the blur stops at edges of depth", "[half_resolution_march]") {
   double half = 0;  // of weights, beside the middle one
   for (int i = 1; i <= 5; ++i) half += std::exp(-i * i / (2 * std::pow(5 / 1.5, 2)));

@@ -187,7 +187,7 @@ TEST_CASE("half-resolution march: the first picture has no history, and pictures
   CHECK(test::next_frame(*still, scene).film.layers == one.layers);
 }
 
-// What a camera has nothing to do with is kept; a light that moved has a map of its own.
+// State that does not depend on the camera is kept; a light that moved has a map of its own.
 TEST_CASE("half-resolution march: maps are made anew where lights moved", "[half_resolution_march]") {
   const Given given = going_on();
   const auto frames = prepared(smoke(camera_at(0), true), given);

@@ -46,7 +46,7 @@ TEST_CASE("half-resolution march: Bayer's matrix by its recursion", "[half_resol
   for (int i = 0; i < 64; ++i) CHECK(all[i] == i);
 }
 
-// What dithering needs: neighbours share the range equally, wherever the window lies.
+// Requirement of dithering: neighbours share the range equally, for any position of the window.
 TEST_CASE("half-resolution march: any 2 x 2 and 4 x 4 offsets of Bayer's matrix are equally spread",
           "[half_resolution_march]") {
   for (const int side : {2, 4, 8})

@@ -1,4 +1,4 @@
-// What is refused, and what is said about a scene.
+// Refusals, and reasons for a scene.
 #include "reference/half_resolution_march/limits.h"
 
 #include <catch2/catch.hpp>

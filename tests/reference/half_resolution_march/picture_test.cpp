@@ -96,7 +96,7 @@ TEST_CASE("half-resolution march: pictures before a flat wall are not shifted", 
   }
 }
 
-// What ends rays is seen through the fog before it, at full resolution.
+// Surfaces that end rays are seen through the fog before them, at full resolution.
 TEST_CASE("half-resolution march: surfaces are shaded by film pixel", "[half_resolution_march]") {
   const SlabOfFog fog;
   auto scene = with_wall(fog, 0.5, 0.1, 21, 14);

@@ -1,4 +1,4 @@
-// What a texel holds, against closed forms, numerical integrals and plain implementations.
+// Encodings of a texel, against closed forms, numerical integrals and plain implementations.
 #include "reference/light_map/encoding.h"
 
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-// What a picture says where no sample, or next to none, brought light.
+// Errors of a picture where no sample, or next to none, brought light.
 #include "reference/path_tracer/certainty.h"
 
 #include <catch2/catch.hpp>
@@ -120,7 +120,7 @@ TEST_CASE("a narrow thin medium is no more certain than it should be", "[path_tr
               far += std::abs(found - expected) > 6 * film.get("se", x, y)[0] + 1e-6 * expected;
             }
           CAPTURE(width, depth, seed);
-          // Of all 7840 estimates: the normal law's 2e-9 is no guide to 64 samples, but none is so far.
+          // None of all 7840 estimates is that far off. (The normal distribution's 2e-9 does not apply to 64 samples.)
           CHECK(far == 0);
         }
       }

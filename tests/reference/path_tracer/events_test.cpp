@@ -45,7 +45,7 @@ TEST_CASE("one event: scattered once by the medium, or reflected once", "[path_t
   CHECK(agree(once.total.mean[0], expected, error, threshold(1e-6, 1)));
   CHECK(error < 0.005 * expected);
   CHECK(std::abs(once.total.mean[0] - once.airlight[0] - once.surface[0]) < 1e-12 * expected);
-  // What a cap on scatterings alone adds can be told from it: the floor lit by the fog, the fog by the floor.
+  // Light that a cap on scatterings alone adds can be told from it: the floor lit by the fog, the fog by the floor.
   const Estimate capped = estimate(0.6, 1, -1, 10).total;
   CHECK(capped.mean[0] - expected > 10 * std::hypot(error, capped.error[0]));
 }

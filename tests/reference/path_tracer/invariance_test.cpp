@@ -1,4 +1,4 @@
-// What must not matter: threads, splits of the samples, powers of two, majorants, the form of a medium.
+// Properties that must not matter: threads, splits of the samples, powers of two, majorants, the form of a medium.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -41,7 +41,7 @@ std::vector<scene::Medium> scaled(std::vector<scene::Medium> media, double extin
   return media;
 }
 
-// What may be in the media's place: one of each kind, and two that overlap, of different colours.
+// Media to test: one of each kind, and two that overlap, of different colours.
 std::vector<std::vector<scene::Medium>> media() {
   scene::Medium ball = medium(scene::Sphere{{0, 0, 0}, 1}, 1, 0.9, phase_of("hazy"));
   scene::Medium blue = ball, red = cloud();
@@ -171,7 +171,7 @@ TEST_CASE("forced collisions before surfaces change the noise and nothing else",
       }
 }
 
-// Of 2^20 analog paths some 300 scatter twice: enough for a normal distribution where no light is close.
+// About 300 of 2^20 analog paths scatter twice: enough for a normal distribution if no light is close.
 TEST_CASE("the second scattering after a forced one", "[path_tracer]") {
   const double limit = threshold(1e-3, 4 * 3);
   int index = 700;

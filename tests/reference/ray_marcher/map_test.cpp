@@ -32,9 +32,9 @@ std::vector<std::string> reasons(const scene::Renderer& renderer, const scene::S
 
 }  // namespace
 
-// Of 64^2 texels and 96 steps. The bounds are one and a half times the greatest error of all these scenes, of the media's
-// light or of that of surfaces behind them: a turned grid cut off by a box, smoke under the sky. Homogeneous media need
-// no map and have exact shadows.
+// Maps have 64^2 texels and 96 steps. The bounds are one and a half times the greatest error over all these scenes, for
+// light from media and from surfaces behind them. The greatest errors are those of a rotated grid cut off by a box, and
+// of smoke under the sky. Homogeneous media need no map and have exact shadows.
 TEST_CASE("ray marcher: pictures with maps are near those with exact shadows", "[ray_marcher][light_map]") {
   const std::map<std::string, double> bounds = {{"slices", 0.016}, {"avsm", 0.066}, {"fourier", 0.045}, {"beer", 0.4}};
   for (const auto& [name, scene] : assorted_scenes()) {
@@ -76,9 +76,10 @@ TEST_CASE("ray marcher: pictures with maps converge to exact shadows", "[ray_mar
   }
 }
 
-// Maps are made of densities in float or in double, and looked up likewise: relative errors of some 1e-7, as measured.
-// Which node of avsm goes can turn on such a difference where two would do nearly the same: then a texel errs otherwise,
-// but not more. In two of these scenes it does, and the pictures change by 5.6e-5 and 1.6e-4, a hundredth of avsm's error.
+// Densities of maps, and lookups, are in float or in double: relative errors of about 1e-7, as measured.
+// Such a difference can decide which node of avsm is removed, if two are nearly equal. The texel's error
+// then differs, but is not larger. In two of these scenes it does, and the pictures change by 5.6e-5 and
+// 1.6e-4, a hundredth of avsm's error.
 TEST_CASE("ray marcher: look-ups by kernels agree with the plain path", "[ray_marcher][light_map]") {
   for (const auto& [name, scene] : assorted_scenes())
     for (const char* encoding : encodings) {

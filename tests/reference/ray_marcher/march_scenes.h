@@ -63,7 +63,7 @@ std::shared_ptr<const scene::VoxelGrid> make_smoke(int size, double voxel, const
 // 2 m wide.
 std::vector<std::pair<std::string, std::shared_ptr<const scene::Scene>>> assorted_scenes();
 
-// The same scene with all lengths multiplied: the picture from the scaled camera is the same.
+// The scene with all lengths multiplied by `scale`: the picture from the scaled camera is unchanged.
 std::shared_ptr<const scene::Scene> scaled_scene(const scene::Scene&, double scale);
 
 inline scene::View small_view() {

@@ -67,9 +67,9 @@ TEST_CASE("ray marcher: homogeneous media: oracle vectors are reached at order 2
   CHECK(seen == 13);
 }
 
-// The same with sums of Gaussians: both marches are midpoint rules now. The view ends at a point, the light sees the
-// unbounded medium. Where terms of the error happen to cancel, or a Gaussian is a few steps wide, a single slope is off
-// by a few tenths at these step counts; the median over all rays is not.
+// For sums of Gaussians both marches are midpoint rules. The view ends at a point, the light sees the unbounded medium.
+// A single slope is off by a few tenths at these step counts if terms of the error cancel, or if a Gaussian is a few
+// steps wide. The median over all rays is not.
 TEST_CASE("ray marcher: sums of Gaussians: oracle vectors are reached at order 2", "[ray_marcher]") {
   std::vector<double> slopes;
   for (const json& v : airlight::test::vectors_in("references")) {

@@ -29,7 +29,7 @@ TEST_CASE("Gaussians keep who they are from frame to frame", "[gaussian_fit][con
       std::vector<int> ids = next.ids;
       std::sort(ids.begin(), ids.end());
       CHECK(std::adjacent_find(ids.begin(), ids.end()) == ids.end());
-      // Whoever is in both frames has hardly moved.
+      // Gaussians that are in both frames have hardly moved.
       int kept = 0;
       for (std::size_t i = 0; i < next.ids.size(); ++i) {
         const auto before = std::find(fit.ids.begin(), fit.ids.end(), next.ids[i]);

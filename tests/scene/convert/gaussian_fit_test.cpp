@@ -87,7 +87,7 @@ TEST_CASE("a fit's objective in single precision, by any number of threads", "[g
   CHECK(two.value(gaussians, g2.data()) == one.value(gaussians));
   CHECK(g1 == g2);
   for (std::size_t i = 0; i < 150; ++i) CHECK(g1[i] == Approx(g0[i]).epsilon(1e-4).margin(1e-4));
-  // What is added one by one is what is there at once; correlations foretell it.
+  // Gaussians that are added one by one give the value of all at once; correlations predict it.
   double value = one.value({gaussians.begin(), gaussians.end() - 3});
   for (std::size_t i = 27; i < 30; ++i) {
     const auto [with_error, with_itself] = one.correlation(gaussians[i]);

@@ -50,7 +50,7 @@ TEST_CASE("an even box is the same in every form that can hold it", "[convert]")
     REQUIRE(other.media.size() == 1);
     CHECK(other.media[0].density_error < 1e-6);
     CHECK(other.media[0].mass_ratio == Approx(1).epsilon(1e-6));
-    // What is not density stays.
+    // Everything but the density stays.
     const Medium &before = even.media[0], &after = other.scene.media[0];
     CHECK((after.sigma_t == before.sigma_t).all());
     CHECK((after.albedo == before.albedo).all());

@@ -119,7 +119,7 @@ TEST_CASE("bad tables of Gaussians name their line and column", "[load]") {
   }
 }
 
-// As editors, spreadsheets and other programs write them.
+// Tables as editors, spreadsheets and other programs write them.
 TEST_CASE("tables of Gaussians in other spellings", "[load]") {
   const TemporaryFolder folder;
   const std::string mark = "\xEF\xBB\xBF", header = "center_x,center_y,center_z,width,amplitude\n",

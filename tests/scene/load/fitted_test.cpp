@@ -84,7 +84,7 @@ TEST_CASE("a fitted grid is what its Gaussians and residual stand for", "[load][
     worst = std::max(worst, std::abs(double(fitted.grid.values[i]) - original.values[i]));
   CHECK(worst <= 1.5 * fitted.residual->step + 1e-6);
   CHECK(worst > 0);
-  // As a grid in every respect.
+  // Fitted smoke behaves like its grid in every respect.
   Medium other = m;
   other.field = std::make_shared<const VoxelGrid>(fitted.grid);
   const Ray ray{{-2, -0.4, 0.8}, Vec3(1, 0.1, 0.05).normalized()};

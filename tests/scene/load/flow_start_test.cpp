@@ -1,4 +1,4 @@
-// What flows begin with from files: frames come back bit for bit, other grids at their places, damage is refused.
+// Initial states of flows from files: frames come back bit for bit, other grids at their places, damage is refused.
 #include <random>
 
 #include "reference/stable_fluids/stable_fluids.h"
@@ -84,7 +84,7 @@ center = [-0.2, 0.4, )" +
       const Frame frame = first->frame();
       write_frame(folder.file("frame.vdb"), frame, {});
 
-      // As the file has it: nothing projects a velocity that stays.
+      // The values equal those of the file: a velocity that stays is not projected.
       const std::string text = box + all_grids;
       const FlowProblem given = parse_flow(text + "velocity_stays = true\n", "b.toml", folder.path().string());
       const Frame back = start(given, settings)->frame();
@@ -141,7 +141,7 @@ TEST_CASE("a flow begins with grids of other cells, staggered or not", "[flow][l
   CHECK(start_velocity(problem, 0, Point3(1.01, 0.7, 2.2)) == Approx(1 + 2 - 0.7 + 1.1).margin(0.03));
   CHECK(start_velocity(problem, 1, Point3(1.13, 0.7, 2.2)) == 0);
 
-  // The same file, of a class that is not staggered: values belong to the middle of cells.
+  // The file with a class that is not staggered: values belong to the middle of cells.
   std::string bytes = read_bytes(folder.file("frame.vdb"));
   REQUIRE(bytes.find("staggered") != std::string::npos);
   bytes.replace(bytes.find("staggered"), 9, "collocate");

@@ -209,7 +209,7 @@ TEST_CASE("flow problems: refused with place, what was found and what was expect
     CHECK(refusal(text).find('\n') == std::string::npos);
   }
   CHECK_THROWS_WITH(load_flow("/nowhere/f.toml"), Contains("/nowhere/f.toml"));
-  // What can leave may come in.
+  // A flow that can leave may come in.
   for (const char* way_out : {"right = { type = \"open\" }", "right = { type = \"inflow\", velocity = [3, 0, 0] }",
                               "top = { type = \"inflow\", velocity = [0, 6, 0] }"})
     CHECK(refusal(flow_of_box + "[sides]\nleft = { type = \"inflow\", velocity = [3, 0, 0] }\n" + way_out).empty());

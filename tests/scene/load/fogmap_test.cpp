@@ -1,4 +1,4 @@
-// What a fogmap may be read from, and what is refused: each rule of input of the method's specification.
+// Files that a fogmap may be read from, and files that are refused: each rule of input of the method's specification.
 #include "scene/media/fogmap.h"
 
 #include <ImfChannelList.h>

@@ -1,4 +1,4 @@
-// What loading a scene says.
+// Error message of loading a scene.
 #pragma once
 #include <catch2/catch.hpp>
 #include <string>

@@ -1,4 +1,4 @@
-// What the values of a scene file become.
+// Conversion of the values of a scene file.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>

@@ -33,7 +33,7 @@ TEST_CASE("elementary functions are within two units in the last place", "[eleme
       log_error = std::max(log_error, ulps(elementary::log(x), std::log((long double)(x))));
     for (const double x : {-40 * u, 1400 * u - 700, 0x1p-20 * (u - 0.5)})
       exp_error = std::max(exp_error, ulps(elementary::exp(x), std::exp((long double)(x))));
-    // Of the rounded argument 2 pi u: near zeros of the function the error is absolute, in ulp of 2 pi.
+    // The argument 2 pi u is rounded: near zeros of the function the error is absolute, in ulp of 2 pi.
     const long double angle = 2 * 3.14159265358979323846264338327950288L * u;
     const auto turn = elementary::sincos_turns(u);
     sin_error = std::max(sin_error, double(std::abs(turn.sin - std::sin(angle))));

@@ -131,7 +131,7 @@ TEST_CASE("stress 21: overlapping media add", "[media]") {
     CHECK(optical_depth(media, ray, {0, 1}).isApprox(depth_sum, 1e-14));
     CHECK(transmittance(media, ray, {0, 1}).isApprox(product, 1e-12));
   }
-  // The same medium twice is twice as dense, bit for bit.
+  // Two equal media are twice as dense as one, bit for bit.
   const Ray ray{{0, 0, 0}, Vec3::UnitZ()};
   CHECK((optical_depth({media[3], media[3]}, ray, {0, 1}) == 2 * optical_depth({media[3]}, ray, {0, 1})).all());
 }

@@ -84,14 +84,14 @@ TEST_CASE("a grid written as OpenVDB comes back bit for bit", "[media][vdb]") {
     CHECK(back.voxel_size == Approx(grid.voxel_size).epsilon(1e-14));
     CHECK(back.rotation.isApprox(grid.rotation, 1e-14));
     CHECK(back.translation == grid.translation);
-    // The same place in the world: a rotated, shifted and scaled grid is read as it was written.
+    // A rotated, shifted and scaled grid is read back at its place in the world.
     RandomPoints random(2);
     for (int i = 0; i < 100; ++i) {
       const Point3 x = random.in(support(grid));
       CHECK(density(back, x) == Approx(density(grid, x)).margin(1e-12));
     }
   }
-  // Only scaled: exactly so.
+  // A grid that is only scaled is read back exactly.
   VoxelGrid plain = some_grid({5, 5, 5});
   plain.rotation.setIdentity();
   write_vdb(path, plain, "smoke");

@@ -296,7 +296,7 @@ TEST_CASE("stress 19: an empty grid, one voxel, one active voxel", "[media]") {
   CHECK(density(one, {0.5, -0.5, 0.1}) == 3);
   CHECK(density(one, {0.51, -0.5, 0.1}) == 0);
   CHECK(density_integral(one, ray, {0, infinity}) == Approx(3).epsilon(1e-14));
-  // The same sample inside a block of zeros.
+  // The sample inside a block of zeros.
   VoxelGrid active;
   active.size = {3, 3, 3};
   active.origin_index = {-1, -1, -1};

@@ -57,7 +57,7 @@ json run_here(std::vector<std::string> arguments, unsigned seconds) {
     close(file);
   }
   const double before = seconds_of(used());
-  // Of the processor, which others may use as well; and of the clock, where it waits for what never comes.
+  // Limits processor time, which does not depend on other processes, and clock time, in case the command waits forever.
   const rlimit processor{rlim_t(before) + 1 + seconds, RLIM_INFINITY};
   setrlimit(RLIMIT_CPU, &processor);
   alarm(10 * seconds);

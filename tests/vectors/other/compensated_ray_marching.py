@@ -27,7 +27,7 @@ def leaves(value, path):
 
 
 def add(kind, inputs, expected, rtol, atol, **more):
-    """Of each list of expected numbers the first and the last are made wrong in turn."""
+    """Adds a vector. The first and the last number of each list of expected numbers are made wrong in turn."""
     expected = plain(expected)
     wrong, seen = {}, {}
     for path, value in leaves(expected, '/expected'):
@@ -57,7 +57,7 @@ def triple(order):
 
 
 def zonal_depth(order, d, cut):
-    """Of a Gaussian of width and amplitude 1 at a distance d, by quadrature in the cosine."""
+    """Zonal coefficients of the depth of a Gaussian of width and amplitude 1 at a distance d, by quadrature in the cosine."""
     def depth(mu):
         a, square = d * mu, d * d * (1 - mu * mu)
         if cut is None:

@@ -22,7 +22,7 @@ def dot(a, b):
 
 
 def line_integral(g, o, r, d):
-    """Of c exp(-a^2 |x - b|^2) over 0 < t < d."""
+    """Integral of c exp(-a^2 |x - b|^2) over 0 < t < d."""
     a, c, b = mpf(g['a']), mpf(g['c']), [mpf(x) for x in g['b']]
     m = dot(away(o, b), r)
     square = dot(away(o, b), away(o, b)) - m * m
@@ -72,7 +72,7 @@ def npsf(gamma, t):
 
 
 def npsf_coefficient(band, t):
-    """Of the zonal harmonic; the integral along the ray is e^z E1(z) here."""
+    """Coefficient of the zonal harmonic. The integral along the ray is e^z E1(z) here."""
     def term(x):
         z = t * (1 - expj(x))
         return (exp(z) * e1(z)).imag * legendre(band, cos(x))

@@ -19,7 +19,7 @@ def values(n, x, slope=0):
 
 
 def integrals(n, x):
-    """Of L_1 to L_{n-1} from -1."""
+    """Integrals of L_1 to L_{n-1} from -1."""
     return np.array([sqrt((2 * k + 1) / 2) * legendre.legval(x, legendre.legint([0] * k + [1], lbnd=-1)) for k in range(1, n)])
 
 
@@ -268,7 +268,7 @@ def density_at(R, x):
 
 
 def column(R, x, way, end):
-    """Of the density from x along a way, to a distance, by a rule that is exact."""
+    """Integral of the density from x along a direction, up to a distance, by a rule that is exact."""
     node, weight = legendre.leggauss(sum(R.shape))
     s = end * (node + 1) / 2
     return end / 2 * weight @ density_at(R, x[:, None] + way[:, None] * s)

@@ -207,7 +207,7 @@ def beam_flux(albedo, tau):
 
 
 def path(radius, r, mu, node, weight, sigma=1.0):
-    """Of an even ball, backwards from a point at r that the way leaves at mu to the radius: radii, shares, what is left."""
+    """Rule along a path in a homogeneous ball, backwards from a point at r, mu the cosine to the radius: radii, shares, transmittance."""
     length = r * mu + np.sqrt(np.maximum(0, radius**2 - r * r * (1 - mu * mu)))
     s = length * (node + 1) / 2
     return np.sqrt(r * r * (1 - mu * mu) + (r * mu - s)**2), sigma * np.exp(-sigma * s) * weight * length / 2, exp(-sigma * length)
@@ -263,7 +263,8 @@ def spheres():
     }
     add('sphere_environment_all_orders', {'optical_radius': radius, 'albedo': albedo}, expected, {'abs': 1e-6},
         {'/expected/J_centre': 0.05, '/expected/L/0.75': 0.05, '/expected/orders_b0.5/1': 0.05})
-    # The same for a ray, and the collisions of a path that dies with 1 - albedo at each: n = K (1 + albedo n) from a point.
+    # Orders along a ray, and the number of collisions of a path that ends with probability 1 - albedo at each collision: n = K (1 +
+    # albedo n) from a point.
     R, sigma, albedo, b = 1.5, 0.8, 0.9, 0.6
     ball_ = Ball(R, sigma)
     share, clear = ball_.chord(b)

@@ -7,7 +7,7 @@ from fogshop import along, away, dot, norm
 
 
 def phase(name, g, c):
-    """As printed: the mean over the sphere of the first two is not 1."""
+    """Phase functions as printed: the mean over the sphere of the first two is not 1."""
     return {
         'hazy': lambda: 1 + 9 * ((1 + c) / 2)**8, 'murky': lambda: 1 + 50 * ((1 + c) / 2)**32, 'iso': lambda: mpf(1),
         'rayleigh': lambda: 3 * (1 + c * c) / 4, 'hg': lambda: (1 - g * g) / (1 + g * g - 2 * g * c)**1.5

@@ -7,7 +7,7 @@ from mpmath import exp, expm1, mp, mpf, sqrt
 from common import File, absolute, relative
 
 file = File('wavelet_fog', format='airlight-wavelet-fog-1')
-# The filters of Cohen, Daubechies and Feauveau: (first, taps) of p, q, p~, q~. That they belong together is asserted below.
+# The filters of Cohen, Daubechies and Feauveau: (first, taps) of p, q, p~, q~. Assertions below check that they belong together.
 FAMILIES = {
     'haar': (0, (0, [1, 1]), (0, [1, -1]), (0, [Q(1, 2)] * 2), (0, [Q(1, 2), Q(-1, 2)])),
     'cdf22': (1, (0, [Q(1, 2), 1, Q(1, 2)]), (-2, [Q(c, 8) for c in (-1, -2, 6, -2, -1)]), (-1, [Q(c, 8) for c in (-1, 2, 6, 2, -1)]),
@@ -112,7 +112,7 @@ def profile_value(profile, z):
 
 
 def depth(v, c, level=0, part=(0, 1)):
-    """Of the coefficients {(i, j): value} with cells 2^level times as large, over a part of the segment."""
+    """Optical depth of coefficients {(i, j): value} with cells 2^level times as large, over a part of the segment."""
     a, b = [[mpf(x) for x in v[k]] for k in 'AB']
     cell = mpf(v['cell']) * 2**level
     start = [(a[k] - mpf(v['origin'][k])) / cell for k in (0, 1)]
@@ -223,7 +223,7 @@ def make():
         'expected': {'transmittance': text(exp(-tau)), 'L': text(exp(-tau) * behind - expm1(-tau) * fog)}
     }
     file.add('composite', v, relative(v, 1e-15, '/expected/transmittance', '/expected/L'))
-    # What is refused is made right by the change: then it must not be refused.
+    # The change makes a refused input valid: then it must not be refused.
     file.add('reject', {'degree': 2, 'width': 2, 'height': 3, 'coef': [1, 0.5, 0, 2, -0.125, 1], 'expected': 'error'}, {'/coef/4': 1})
     file.add(
         'reject', {
