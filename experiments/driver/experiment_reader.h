@@ -21,6 +21,8 @@ class ExperimentReader {
 
   // Scenes and methods of the experiment that `like` names, beside those of this file.
   void take_over(const TableReader& top);
+  // Replaces the method's renderer by its twin on the device.
+  void to_device(toml::table& method, const std::string& name, const TableReader& reader) const;
 
   const ExperimentKind& kind() const { return *experiment_.kind; }
   std::string position(const std::string& key) const;

@@ -129,8 +129,12 @@ void ExperimentReader::has_figures(const TableReader& reader, const GateCase& ga
     return kind().draws_pictures() && !name.empty() && find_renderer(name, "gate").monte_carlo();
   };
   bool found = false;
+  std::vector<std::string> settings;  // that the method has there
   for (const SceneCase& c : experiment_.scenes)
     for (const MethodCase& m : experiment_.methods) {
+      if (is_on(m, c) && m.name == gate.method && judges(gate, c.name, m.name, gate.setting) &&
+          std::find(settings.begin(), settings.end(), m.setting) == settings.end())
+        settings.push_back(m.setting);
       if (!judges(gate, c.name, m.name, m.setting) || !is_on(m, c)) continue;
       found = true;
       if (of_time_or_work || !kind().draws_pictures()) continue;
@@ -142,9 +146,12 @@ void ExperimentReader::has_figures(const TableReader& reader, const GateCase& ga
       if (gate.metric == "wrong" && noisy_reference) wrong("wrong is not defined against a noisy reference");
     }
   if (!found)
-    wrong(fmt::format("there is no row of method '{}'{}{}", gate.method,
+    wrong(fmt::format("there is no row of method '{}'{}{}{}", gate.method,
                       gate.setting.empty() ? "" : fmt::format(" with setting {}", gate.setting),
-                      gate.scene.empty() ? "" : fmt::format(" on scene '{}'", gate.scene)));
+                      gate.scene.empty() ? "" : fmt::format(" on scene '{}'", gate.scene),
+                      gate.setting.empty() || settings.empty()
+                          ? ""
+                          : fmt::format("; its settings are {}", fmt::join(settings, ", "))));
 }
 
 void ExperimentReader::checks(const TableReader& top) {
