@@ -165,6 +165,80 @@ class Figures(Tree):
         self.objects("methods/PAGE.md:10: no line of methods/PAGE.figures covers 'or 13 %.'")
 
 
+CLAIMS = """metrics = ["rel_l2"]
+[[claim]]
+where = "Figure 10"
+claim = "accurate"
+published = "{two|S|8; %} off"
+improved = "{one, large|S|16; %} off in {one, large|S|16|seconds; ms}"
+verdict = "holds only where it is large"
+holds = "[two|S|8] > 0.4 and [one, large|S|8] < 0.1"
+[[claim]]
+where = "Figure 9"
+claim = "fast"
+verdict = "not comparable: other hardware"
+[[erratum]]
+where = "Eq. 1"
+printed = "a"
+right = "b"
+proof = "{[one, large|S|8] / [one, large|S|16]; 3} times"
+"""
+CLAIMED = """# Claims
+<!-- verdicts -->
+<!-- end -->
+<!-- claims: g -->
+<!-- end -->
+<!-- failing claims -->
+<!-- end -->
+<!-- errata -->
+<!-- end -->
+"""
+
+
+@unittest.skipIf(sys.version_info < (3, 11), "no tomllib")
+class Claims(Tree):
+    def setUp(self):
+        super().setUp()
+        self.write("results/g/e/table.csv", TABLE)
+        self.write("results/gallery/g_fig9.png", "")
+        self.write("experiments/g/e.toml", CLAIMS)
+        self.write("results/README.md", CLAIMED)
+        self.assertEqual(self.run_script("figures")[0], 0)
+
+    def objects(self, *words):
+        code, text = self.run_script("figures", "--check")
+        self.assertEqual(code, 1, text)
+        for word in words:
+            self.assertIn(word, text)
+
+    def test_writes_the_tables(self):
+        page = self.read("results/README.md")
+        figure_9 = "| Figure 9 | fast | - | - | not comparable: other hardware | [e](g/e), [picture](gallery/g_fig9.png) |\n"
+        figure_10 = "| Figure 10 | accurate | 50 % off | 0.031 % off in 4.0 ms | holds only where it is large | [e](g/e) |\n"
+        self.assertIn(figure_9 + figure_10, page)
+        self.assertIn("| G | 0 | 0 | 1 | 0 | 1 |\n", page)
+        self.assertIn("| G | Figure 10 | accurate | 50 % off | holds only where it is large | [e](g/e) |\n", page)
+        self.assertIn("| G | Eq. 1 | a | b | 39.9 times | [e](g/e) |\n", page)
+        self.assertEqual(self.run_script("figures", "--check")[0], 0)
+        self.assertEqual(self.run_script("figures")[0], 0)
+        self.assertEqual(self.read("results/README.md"), page)
+
+    def test_a_changed_table_and_a_changed_page(self):
+        self.write("results/g/e/table.csv", TABLE.replace("two,,S,8,0.5,", "two,,S,8,0.6,"))
+        self.objects("results/README.md:11: found | Figure 10 | accurate | 50 % off", "expected | Figure 10 | accurate | 60 % off")
+        self.write("results/g/e/table.csv", TABLE)
+        self.write("results/README.md", self.read("results/README.md").replace("| fast | - |", "| fast | 1 |"))
+        self.objects("results/README.md:10: found | Figure 9 | fast | 1 |")
+
+    def test_a_verdict_that_is_no_longer_true(self):
+        self.write("results/g/e/table.csv", TABLE.replace("two,,S,8,0.5,", "two,,S,8,0.3,"))
+        self.objects("experiments/g/e.toml: claim 1: 'holds only where it is large' does not hold")
+
+    def test_a_row_that_is_gone(self):
+        self.write("experiments/g/e.toml", CLAIMS.replace("{two|S|8; %}", "{three|S; %}"))
+        self.objects("experiments/g/e.toml: claim 1: results/g/e/table.csv has no row three|S")
+
+
 @unittest.skipIf(sys.version_info < (3, 11), "no tomllib")
 class Tighten(Tree):
     def setUp(self):
