@@ -24,13 +24,13 @@ PAGE = """# A page
 
 | what | ours |
 |---|---|
-| error | from 0 with 8, below 0 with
+| error | from 0 with 8, below 0 and 0 with
 16, or 0; |
 
 It takes 0 ms, .1 times, and S wins.
 """
 FIGURES = """[g/e rel_l2]
-from {range([*|S|8])} with 8, below {below([two|S|16])} with 16, or {one, large|S|16;8}
+from {range([*|S|8])} with 8, below {below([two|S|16])} and {below(percent([two|S|16]))} with 16, or {one, large|S|16;8}
 takes {[two|S|8|seconds] * 1000; 1} ms, {[g/e: one, large|S|8|seconds] / [two|S|16|seconds]; 3} times
 S wins ?? [one, large|S|16] < [one, large|S|8]
 """
@@ -101,10 +101,10 @@ class Figures(Tree):
 
     def test_puts_the_figures_in(self):
         page = self.read("methods/PAGE.md")
-        self.assertIn("from 0.012 to 0.50 with 8, below < 0.040 with\n16, or 3.1e-4, 0.012; |", page)
+        self.assertIn("from 0.012 to 0.50 with 8, below < 0.040 and < 4.0 with\n16, or 3.1e-4, 0.012; |", page)
         self.assertIn("takes 3 ms, .333 times", page)
         code, text = self.run_script("figures", "--check")
-        self.assertEqual((code, text), (0, "5 figures in 1 pages: 0 differ from the tables, 0 lines cannot be read\n"))
+        self.assertEqual((code, text), (0, "6 figures in 1 pages: 0 differ from the tables, 0 lines cannot be read\n"))
 
     def test_functions(self):
         rows = [f"s,,m,{i},{x},{y}" for i, (x, y) in enumerate(((4, 0.5), (1, -0.25), (2, 0.125), (9, -1.0)))]
