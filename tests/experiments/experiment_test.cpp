@@ -189,16 +189,16 @@ TEST_CASE("a claim of a paper needs a verdict from the list and what makes it tr
   CHECK_THAT(failure(claim + holds + "verdict = \"not reproduced\"\n"), Contains("no failure"));
   CHECK_THAT(failure(claim + holds + "verdict = \"holds only where it is thin: why\"\n"), Contains("no failure"));
   CHECK_THAT(failure(claim + "verdict = \"not comparable: no number\"\n"), Contains("no failure"));
-  CHECK_THAT(failure(claim + "verdict = \"reproduced\"\n"), Contains("e.toml:25:1") && Contains("holds is missing"));
+  CHECK_THAT(failure(claim + "verdict = \"reproduced\"\n"), Contains("e.toml:26:1") && Contains("holds is missing"));
   CHECK_THAT(failure(claim + holds + "verdict = \"true\"\n"),
-             Contains("e.toml:30:11") && Contains("expected reproduced, not reproduced"));
-  CHECK_THAT(failure(claim + holds), Contains("e.toml:25:1") && Contains("verdict"));
-  CHECK_THAT(failure(claim + "figure = 4\n"), Contains("e.toml:29:1") && Contains("figure"));
+             Contains("e.toml:31:11") && Contains("expected reproduced, not reproduced"));
+  CHECK_THAT(failure(claim + holds), Contains("e.toml:26:1") && Contains("verdict"));
+  CHECK_THAT(failure(claim + "figure = 4\n"), Contains("e.toml:30:1") && Contains("figure"));
   CHECK_THAT(failure(claim + holds + "verdict = \"reproduced\"\ngroup = \"h\"\n"),
-             Contains("e.toml:31:9") && Contains("a folder of experiments/"));
+             Contains("e.toml:32:9") && Contains("a folder of experiments/"));
   const std::string erratum = good + "[[erratum]]\nwhere = \"Eq. 1\"\nprinted = \"1\"\nright = \"2\"\n";
   CHECK_THAT(failure(erratum + "proof = \"{one|marcher}\"\n"), Contains("no failure"));
-  CHECK_THAT(failure(erratum), Contains("e.toml:25:1") && Contains("proof"));
+  CHECK_THAT(failure(erratum), Contains("e.toml:26:1") && Contains("proof"));
 }
 
 TEST_CASE("bounds by row come before the gates of the file, and belong to one", "[experiment]") {
