@@ -234,6 +234,14 @@ class Claims(Tree):
         self.write("results/g/e/table.csv", TABLE.replace("two,,S,8,0.5,", "two,,S,8,0.3,"))
         self.objects("experiments/g/e.toml: claim 1: 'holds only where it is large' does not hold")
 
+    def test_a_row_without_figures_keeps_what_it_says(self):
+        page = self.read("results/README.md")
+        self.write("results/g/e/table.csv", TABLE.replace("two,,S,8,0.5,0.5,0.5,0.003,", "two,,S,8,,,,,no such device"))
+        code, text = self.run_script("figures", "--check")
+        self.assertEqual(code, 0, text)
+        self.assertIn("claim 1: results/g/e/table.csv has no row two|S|8 with a number in rel_l2: the page is left as it is", text)
+        self.assertEqual(self.read("results/README.md"), page)
+
     def test_a_row_that_is_gone(self):
         self.write("experiments/g/e.toml", CLAIMS.replace("{two|S|8; %}", "{three|S; %}"))
         self.objects("experiments/g/e.toml: claim 1: results/g/e/table.csv has no row three|S")
