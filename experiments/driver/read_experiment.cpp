@@ -79,8 +79,9 @@ Experiment ExperimentReader::read() {
     kinds.push_back(kind->name());
     if (toml_["kind"].value_or(std::string()) == kind->name()) experiment_.kind = kind;
   }
-  std::vector<std::string> keys{"kind",   "title", "paper", "about",    "summary",  "metrics", "in_tests", "scene",
-                                "method", "plot",  "gate",  "speed_up", "expected", "profile", "timing",   "like"};
+  std::vector<std::string> keys{"kind",     "title",   "paper",  "about", "summary", "metrics",
+                                "in_tests", "scene",   "method", "plot",  "gate",    "speed_up",
+                                "expected", "profile", "timing", "like",  "claim",   "erratum"};
   const std::vector<std::string> of_kind = kind().keys();
   keys.insert(keys.end(), of_kind.begin(), of_kind.end());
   top.allow(keys);
@@ -103,6 +104,7 @@ Experiment ExperimentReader::read() {
   names_apart();
   checks(top);
   if (top.has("summary")) check_summary(top);
+  claims(top);
   return experiment_;
 }
 

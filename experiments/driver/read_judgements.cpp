@@ -233,4 +233,32 @@ void ExperimentReader::check_summary(const TableReader& top) const {
   }
 }
 
+void ExperimentReader::claims(const TableReader& top) const {
+  const auto paper_exists = [&](const TableReader& reader) {
+    if (reader.has("group") && !fs::is_directory(folders_.root / "experiments" / reader.file_name("group")))
+      reader.expected("group", "a folder of experiments/");
+  };
+  for (auto& [table, reader] : lists(top, "claim")) {
+    reader.allow({"where", "claim", "published", "improved", "verdict", "holds", "group", "table"});
+    for (const std::string key : {"where", "claim", "verdict"}) reader.text(key);
+    for (const std::string key : {"published", "improved", "holds", "table"}) reader.text(key, "");
+    paper_exists(reader);
+    const std::string verdict = reader.text("verdict");
+    const std::string short_verdict = verdict.substr(0, verdict.find(':'));
+    const std::vector<std::string> verdicts{"reproduced", "not reproduced", "failure reproduced", "not comparable"};
+    if (!short_verdict.starts_with("holds only where ") &&
+        std::find(verdicts.begin(), verdicts.end(), short_verdict) == verdicts.end())
+      reader.expected("verdict", fmt::format("{} or holds only where ..., with : and a reason where that helps",
+                                             fmt::join(verdicts, ", ")));
+    if (short_verdict != "not comparable" && !reader.has("holds"))
+      reader.fail("", "holds is missing: the condition on the tables that makes the verdict true");
+  }
+  for (auto& [table, reader] : lists(top, "erratum")) {
+    reader.allow({"where", "printed", "right", "proof", "holds", "group", "table"});
+    for (const std::string key : {"where", "printed", "right", "proof"}) reader.text(key);
+    for (const std::string key : {"holds", "table"}) reader.text(key, "");
+    paper_exists(reader);
+  }
+}
+
 }  // namespace airlight::experiments
