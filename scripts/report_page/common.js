@@ -43,7 +43,8 @@
   const describe = (row, method) => `${method}${row.c ? " (medium converted)" : ""}\n${row.set ? row.set + "\n" : ""}` +
     `${data.metrics[state.metric]} ${shown(row.v[state.metric], state.metric)}` +
     ` [${digits(row.v[state.metric][1])}, ${digits(row.v[state.metric][2])}]\n` +
-    `${time(row.t[state.moves])}${row.anew.includes(state.moves) ? ", all prepared again" : ""}\n${row.lacks ? `leaves out ${row.lacks}\n` : ""}${row.all}`;
+    `${time(row.t[state.moves])}${row.anew.includes(state.moves) ? ", all prepared again" : ""}\n` +
+    `${row.lacks ? `leaves out ${row.lacks}\n` : ""}${row.all}`;
 
   const cell = (rows, method, fronts) => {
     const drawn = rows.filter(error);

@@ -137,7 +137,8 @@ def fragment(results):
             "name": name, "words": words, "film": f"{film[0]} x {film[1]}", "scenes": scenes, "methods": methods,
             "machine": device_of(run) or f'{run["machine"]["cpu"]}, {run["machine"]["threads"]} threads',
             "commit": f'measured at commit {run["commit"]}',
-            "rows": [{"s": scenes.index(r.scene), "m": methods.index(r.method), "set": r.setting, "label": r.label, "all": r.settings, "c": r.converted,
+            "rows": [{"s": scenes.index(r.scene), "m": methods.index(r.method), "set": r.setting, "label": r.label,
+                      "all": r.settings, "c": r.converted,
                       "v": {k: [m.value, m.low, m.high] for k, m in r.measures.items()},
                       "t": {k: t for k, t in r.times.items() if t is not None}, "anew": r.anew, "lacks": r.left_out,
                       "note": r.note} for r in rows]})

@@ -18,7 +18,7 @@ def files():
             folders[:] = [f for f in folders if f not in ("build", ".git", "shared")]
         elif inside[0] == "results":
             folders[:] = [f for f in folders if f not in ("cache", "images", "report")]
-            names = [n for n in names if n not in ("table.md", "sweep.md") and inside[1:] != ["common"]]  # programs wrote them
+            names = [n for n in names if n not in ("table.md", "sweep.md") and inside[1:] not in (["common"], ["gallery"])]  # programs wrote them
         for name in sorted(names):
             if inside[0] == "scripts" or name.endswith(KINDS) and not (inside[0] == "tests" and name.endswith(".py")):
                 yield os.path.join(path, name)
