@@ -42,11 +42,10 @@
         table(details, rows);
       }, i === 0 && rows.length <= 60);
     if (data.plots && data.plots.length) {
+      add(host, "p", { className: "about", textContent: `Plots: ${data.sized}` });
       const plots = add(host, "div", { className: "plots" });
       for (const [title, svg] of data.plots)
-        add(plots, "figure", {}, add(document.createDocumentFragment(), "img",
-          { src: URL.createObjectURL(new Blob([svg], { type: "image/svg+xml" })), alt: title }),
-        add(document.createDocumentFragment(), "figcaption", { textContent: `${title} (${data.sized})` }));
+        add(add(plots, "figure"), "img", { src: URL.createObjectURL(new Blob([svg], { type: "image/svg+xml" })), alt: title });
     }
     if (data.gates && data.gates.length)
       folded(host, `Gates (${data.gates.length})`, details => {

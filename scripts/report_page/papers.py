@@ -1,4 +1,5 @@
 """What README.md and results/README.md say about the papers: verdicts, and one entry for each figure, table and claim."""
+import collections
 import html
 import os
 import re
@@ -68,6 +69,9 @@ def entries(text):
                 found.append(Entry(chapter, row[0], "\n".join(parts), dict(zip(head, row)).get("verdict", "")))
         else:
             head = []
+    for entry in found:
+        named = collections.Counter(name.split("/")[0] for other in found if other.chapter == entry.chapter for name in other.names)
+        entry.group = named.most_common(1)[0][0] if named else entry.chapter
     return found
 
 
