@@ -63,10 +63,13 @@ def entries(text):
         elif line.startswith("|") and chapter:
             row = cells(line)
             if not head:
-                head = row
-            elif not line.startswith("|--"):
-                parts = [f"{name[0].upper()}{name[1:]}: {cell}" for name, cell in zip(head[1:], row[1:]) if cell not in ("", "-")]
-                found.append(Entry(chapter, row[0], "\n".join(parts), dict(zip(head, row)).get("verdict", "")))
+                head, first = row, int(row[0] == "paper")  # a table over all papers names the paper before the place
+            elif not line.startswith("|--") and not (first and "verdict" in head):  # failing claims are in their paper's table, too
+                named = [(name[0].upper() + name[1:], cell) for name, cell in zip(head, row)][first + 1:]
+                parts = [f"{name}: {cell}" for name, cell in named if cell not in ("", "-")]
+                found.append(Entry(chapter, row[first], "\n".join(parts), dict(zip(head, row)).get("verdict", "")))
+                if first and found[-1].names:
+                    found[-1].chapter = found[-1].names[0].split("/")[0]
         else:
             head = []
     for entry in found:
