@@ -157,8 +157,9 @@ def index_html(runs, gallery):
     for i, e in enumerate(ENTRIES):
         if id(e) not in shown:
             title = "no experiment needed" if "none needed" in e.text else papers.words(e.text).split(". ")[0]
-            rows.append(((e.group, i, ""), row_html(f"entry-{i}", e.group, [e.label], title, "", [chip(e.verdict)], f"{e.label} {e.text}",
-                                                    content_of([e], gallery))))
+            rows.append(((e.group, i, ""), row_html(f"entry-{i}", e.group, [e.label], title, "",
+                                                    [chip(e.verdict), chip("no record here" if e.names else "")],
+                                                    f"{e.label} {e.text}", content_of([e], gallery))))
     rows.sort()
     sections = "".join(f'<section><h3>{html.escape(title)}</h3>{"".join(row for key, row in rows if key[0] == group)}</section>'
                        for group, title in groups.items())
