@@ -214,19 +214,14 @@ int plot_experiments(const ExperimentOptions& options) {
   bool any = false;
   for (const std::string& id : choose_experiments(folders.root, options.names)) {
     const std::string name = results_name(id, options.profile);
-    const auto folder = folders.results / name / "plots";
-    std::vector<std::string> scripts;
-    if (std::filesystem::is_directory(folder))
-      for (const auto& file : std::filesystem::directory_iterator(folder))
-        if (file.path().extension() == ".gp") scripts.push_back(file.path().filename().string());
-    if (scripts.empty()) continue;
+    const std::size_t plots = redraw_plots(read_experiment(folders, id, options.profile), folders.results / name);
+    if (plots == 0) continue;
     any = true;
-    run_gnuplot(folder, scripts);
-    fmt::print("{}: {} plots\n", name, scripts.size());
+    fmt::print("{}: {} plots\n", name, plots);
   }
   if (!any)
     throw Error(
-        fmt::format("no gnuplot scripts of these experiments below {}: `airlight experiment run NAME` writes them",
+        fmt::format("no records with plots of these experiments below {}: `airlight experiment run NAME` writes them",
                     folders.results.string()));
   return 0;
 }

@@ -13,10 +13,14 @@ namespace airlight::experiments {
 // line on standard error says so. A plot without points is left out.
 std::vector<PlotFile> draw_plots(const Outcome&, const std::filesystem::path& folder);
 
+// Draws the plots of an earlier run again, from its record and, for columns, the data files. A map needs its script.
+// Returns their number: 0 where there is no record.
+std::size_t redraw_plots(const Experiment&, const std::filesystem::path& folder);
+
 // The name of a plot's files without their ending; `scene` is empty where one plot shows all scenes.
 std::string plot_name(const PlotCase&, const std::string& scene);
 
-// Runs gnuplot on every script in folder/plots. Throws Unavailable without gnuplot, Error if it fails.
+// Runs gnuplot on these scripts in the folder. Throws Unavailable without gnuplot, Error if it fails.
 void run_gnuplot(const std::filesystem::path& folder, const std::vector<std::string>& scripts);
 bool has_gnuplot();
 

@@ -101,9 +101,9 @@ Row row_from_json(const json& j) {
   row.seconds = {j.at("seconds").at(0), j.at("seconds").at(1), j.at("seconds").at(2)};
   row.coverage = j.at("seconds_interval_coverage");
   row.mad = j.at("seconds_mad");
-  j.at("times").get_to(row.times);
-  text("timed_together", row.group);
-  row.waited = j.at("waited");
+  if (j.contains("times")) j.at("times").get_to(row.times);  // a record leaves them out
+  row.group = j.value("timed_together", "");                 // records of old programs have neither
+  row.waited = j.value("waited", 0.0);
   row.prepare_seconds = j.at("prepare_seconds");
   for (const json& s : j.at("stages")) row.stages.emplace_back(s.at("stage"), s.at("seconds"));
   for (const auto& [name, value] : j.at("counters").items()) row.counters[name] = number(value);
