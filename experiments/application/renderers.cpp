@@ -22,9 +22,13 @@
 
 namespace airlight::experiments {
 
-const std::vector<std::unique_ptr<scene::Renderer>>& all_renderers() {
-  static const auto renderers = [] {
-    std::vector<std::unique_ptr<scene::Renderer>> list;
+namespace {
+
+using Renderers = std::vector<std::unique_ptr<scene::Renderer>>;
+
+Renderers& the_list() {
+  static Renderers renderers = [] {
+    Renderers list;
     list.push_back(deterministic::make_renderer());
     list.push_back(std::make_unique<path_tracer::PathTracer>());
     list.push_back(std::make_unique<ray_marcher::RayMarcher>());
@@ -46,6 +50,18 @@ const std::vector<std::unique_ptr<scene::Renderer>>& all_renderers() {
     return list;
   }();
   return renderers;
+}
+
+}  // namespace
+
+const Renderers& all_renderers() { return the_list(); }
+
+AddedRenderer::AddedRenderer(std::unique_ptr<scene::Renderer> renderer) : renderer_(renderer.get()) {
+  the_list().push_back(std::move(renderer));
+}
+
+AddedRenderer::~AddedRenderer() {
+  std::erase_if(the_list(), [this](const auto& renderer) { return renderer.get() == renderer_; });
 }
 
 bool is_reference(const scene::Renderer& renderer) {

@@ -10,6 +10,18 @@ namespace airlight::experiments {
 
 const std::vector<std::unique_ptr<scene::Renderer>>& all_renderers();
 
+// While it lives, the program has one renderer more: a method that is not in the list. Not thread safe.
+class AddedRenderer {
+ public:
+  explicit AddedRenderer(std::unique_ptr<scene::Renderer>);
+  ~AddedRenderer();
+  AddedRenderer(const AddedRenderer&) = delete;
+  AddedRenderer& operator=(const AddedRenderer&) = delete;
+
+ private:
+  const scene::Renderer* renderer_;
+};
+
 std::vector<std::string> renderer_names();
 
 // Whether the renderer belongs to the folder reference/, which is built from scene/ and reference/ alone.

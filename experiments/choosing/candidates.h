@@ -23,8 +23,4 @@ std::vector<Candidate> candidates_of(const Experiment&);
 // The line that renders the scene so: "airlight render SCENE -m NAME --set ... -o picture.exr". Threads: 0 for all.
 std::string command_line(const Candidate&, const std::string& scene_file, const Pairs& overrides, int threads = 0);
 
-// Parts of the light that the method leaves out by its own account, in short: "orders of scattering
-// above one". Empty if it names none.
-std::string left_out(const scene::Renderer&, const std::vector<scene::Stage>&);
-
 }  // namespace airlight::experiments

@@ -9,6 +9,7 @@
 #include "experiments/application/interrupt.h"
 #include "experiments/application/machine.h"
 #include "experiments/application/renderers.h"
+#include "experiments/driver/left_out.h"
 #include "experiments/driver/timing.h"
 #include "scene/base/error.h"
 
@@ -190,7 +191,7 @@ void Trials::screen(Trial& trial, const Truth& truth, const Goal& goal) {
     throw scene::NotSupported("", reasons.front());
   const SparseView& sparse = truth.sparse;
   Pass first = pass(c, converted, sparse.small);
-  trial.left_out = experiments::left_out(*c.renderer, first.stages);
+  trial.left_out = experiments::left_out(first.stages);
   trial.error = error_of(first.film, truth, c.renderer->monte_carlo());
   if (!std::isfinite(trial.error.value)) throw Error("its error is not defined in this scene");
   trial.of_film = sparse.stride == 1;

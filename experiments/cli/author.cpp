@@ -41,14 +41,13 @@ int author(const AuthorOptions& options) {
 
 void add_author(Commands& commands) {
   const auto options = std::make_shared<AuthorOptions>();
-  CLI::App* c = add_command(
-      commands.app, "author",
-      "make fog by a script: Gaussians (paint, erase, copy, emit, airbrush), or a map of wavelet fog (noise, stroke, "
-      "blur, ...)");
-  c->add_option("SCRIPT", options->script,
-                "operations, one JSON object a line (methods/fogshop/README.md; maps: methods/wavelet_fog/README.md)");
+  CLI::App* c =
+      add_command(commands.app, "author", "make fog by a script of strokes: Gaussians, or a map for wavelet fog");
+  c->add_option(
+      "SCRIPT", options->script,
+      "script (required): one JSON object a line (methods/fogshop/README.md; for maps methods/wavelet_fog/README.md)");
   c->add_option("--out,-o", options->out,
-                "scene file to write; its Gaussians go into CSV beside it, its map into PNG or EXR");
+                "scene file to write (required); its Gaussians go into a CSV beside it, its map into a PNG or EXR");
   commands.add_limit(c);
   commands.add_data(c);
   commands.on(c, [options] {

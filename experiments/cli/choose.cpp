@@ -153,10 +153,13 @@ int choose(const ChooseOptions& options) {
 
 void add_choose(Commands& commands) {
   const auto options = std::make_shared<ChooseOptions>();
-  CLI::App* c = add_command(commands.app, "choose", "which method to take for a scene, within a time or an error");
+  CLI::App* c =
+      add_command(commands.app, "choose", "try all methods on a scene and rank them within a time or an error");
   c->add_option("SCENE", options->scene, "scene file");
-  c->add_option("--budget", options->budget, "time that a frame may take, such as 16ms: ranks by error");
-  c->add_option("--error", options->error, "relative L2 error that a picture may have, such as 5%: ranks by time");
+  c->add_option("--budget", options->budget,
+                "time that a frame may take, e.g. 16ms; ranks by error (this or --error is required)");
+  c->add_option("--error", options->error,
+                "relative L2 error that a picture may have, e.g. 5%; ranks by time (this or --budget is required)");
   c->add_option(
       "--moves", options->moves,
       "what moves from frame to frame: some of camera, lights, media, with commas between them (default: nothing; a "
@@ -165,14 +168,15 @@ void add_choose(Commands& commands) {
   c->add_option(
       "--rows", options->rows,
       "experiment whose [[method]] rows are tried (default common/all_orders, or common/one_order with --orders one)");
-  c->add_option("--film", options->setup.film, "about how many pixels of a row the reference has (default 64)")
+  c->add_option("--film", options->setup.film, "pixels along a row of the sparse reference, about (default 64)")
       ->check(CLI::Range(8, 65536));
-  c->add_option("--samples", options->setup.samples, "samples of a path-traced reference, at least 64 (default 256)")
+  c->add_option("--samples", options->setup.samples, "samples per pixel of a path-traced reference (default 256)")
       ->check(CLI::Range(64LL, 1LL << 30));
-  c->add_option("--spend", options->spend, "time for the whole trial; what does not fit is told (default 60s)");
-  c->add_option("--threads", options->setup.threads, "threads (default: all)")->check(CLI::Range(0, 4096));
+  c->add_option("--spend", options->spend,
+                "time for all trials (default 60s); methods that do not fit into it are named");
+  c->add_option("--threads", options->setup.threads, "number of threads (default 0: all)")->check(CLI::Range(0, 4096));
   c->add_option("--root", options->root, "project folder (default: above the current folder, or above the program)");
-  add_pairs(c, "--override", options->overrides, "a value of the scene file, e.g. film.width=64");
+  add_pairs(c, "--override", options->overrides, "change a value of the scene file, e.g. film.width=64");
   commands.add_limit(c);
   commands.add_data(c);
   commands.add_gpu(c);

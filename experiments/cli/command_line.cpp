@@ -37,7 +37,9 @@ std::string full_name(const CLI::App& command) {
 
 }  // namespace
 
-Commands::Commands() : app("airlight: fog and smoke in real time, judged against references", "airlight") {
+Commands::Commands()
+    : app("airlight: five published methods for real-time fog and smoke, compared with unbiased references",
+          "airlight") {
   app.set_version_flag("--version", fmt::format("airlight {} ({})", version(), commit()));
   app.option_defaults()->always_capture_default(false);
   app.footer(
@@ -51,9 +53,10 @@ void Commands::add_data(CLI::App* command) {
 
 void Commands::add_gpu(CLI::App* command) {
   command
-      ->add_option("--gpu", gpu,
-                   "device: its number, a part of its or its vendor's name, surfaceless, none, or auto, the first that "
-                   "works (default: the variable AIRLIGHT_GPU; airlight doctor lists them)")
+      ->add_option(
+          "--gpu", gpu,
+          "graphics device: a number or a part of a name that `airlight doctor` lists, surfaceless, none, or auto for "
+          "the first that works (default: the variable AIRLIGHT_GPU, else auto)")
       ->type_name("WHICH");
 }
 
@@ -61,8 +64,8 @@ void Commands::add_limit(CLI::App* command) {
   command
       ->add_option(
           "--limit", limits,
-          "memory (2GiB) or time (10min, 90s) that the command may take; more is refused before the work where it can be "
-          "estimated (default: the memory of the machine)")
+          "memory (2GiB) or time (10min, 90s) that the command may take; work estimated to need more is refused before "
+          "it begins (default: the memory of the machine, no limit on time)")
       ->type_name("AMOUNT");
 }
 
@@ -99,6 +102,19 @@ void add_pairs(CLI::App* command, const std::string& flag, Pairs& pairs, const s
 
 void require(const std::string& value, const std::string& what) {
   if (value.empty()) throw Error(fmt::format("{} is missing; see --help", what));
+}
+
+void add_tone(CLI::App* command, std::string& text) {
+  command->add_option("--tone", text, "tone curve of the PNG: clamp (default), aces or agx");
+}
+
+scene::Tone tone_of(const std::string& text) {
+  std::vector<std::string> names;
+  for (const auto& [name, tone] : scene::tones()) {
+    if (name == text) return tone;
+    names.push_back(name);
+  }
+  throw Error(fmt::format("--tone '{}': expected one of {}", text, fmt::join(names, ", ")));
 }
 
 void check_exposure(double exposure) {

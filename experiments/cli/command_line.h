@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "scene/film/tone_curve.h"
+
 namespace airlight::experiments::cli {
 
 // Shared state of all commands: the parser, options that several commands take, and the action of the chosen command.
@@ -36,6 +38,10 @@ void add_pairs(CLI::App* command, const std::string& flag, Pairs&, const std::st
 
 // Throws Error if an argument or option was not given.
 void require(const std::string& value, const std::string& what);
+
+// --tone, the curve of an 8-bit picture; and what its text means. Throws Error for one that is unknown.
+void add_tone(CLI::App* command, std::string& text);
+scene::Tone tone_of(const std::string& text);
 
 // Throws Error for an --exposure that is no number in [-100, 100].
 void check_exposure(double exposure);

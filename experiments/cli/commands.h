@@ -1,5 +1,4 @@
-// The commands of `airlight`, in the order in which its help lists them. Each function adds one command: its options, and its action, which
-// returns the exit code and throws Error (exit code 2 or 3) or scene::Interrupted (130).
+// The commands of `airlight`. Each function adds one command: its options, and its action, which returns the exit code and throws Error (exit code 2 or 3) or scene::Interrupted (130).
 #pragma once
 
 namespace airlight::experiments::cli {
@@ -25,7 +24,10 @@ void add_simulate(Commands&);
 // experiment list, run, plot.
 void add_experiment(Commands&);
 void add_gates(Commands&);
+// Which renderers can render a scene; with --method or --verbose their settings and stages.
 void add_explain(Commands&);
+// What a file holds: sizes, ranges and units.
+void add_info(Commands&);
 // Tries what can render a scene, and ranks it within a time or an error (experiments/choosing).
 void add_choose(Commands&);
 // Runs a script of authoring operations (methods/fogshop/README.md) and writes the scene and its tables of Gaussians.

@@ -8,7 +8,9 @@
 #include "experiments/application/say.h"
 #include "experiments/cli/command_line.h"
 #include "experiments/cli/commands.h"
+#include "experiments/cli/output.h"
 #include "experiments/judging/equality.h"
+#include "experiments/judging/error_map.h"
 #include "experiments/judging/metrics.h"
 #include "scene/base/error.h"
 #include "scene/renderer.h"
@@ -17,7 +19,8 @@ namespace airlight::experiments::cli {
 namespace {
 
 struct CompareOptions {
-  std::string image, reference, scene;
+  std::string image, reference, scene, map;
+  double map_top = 1;
   std::string layer = "mean";
   std::vector<std::string> metrics;
   Pairs most;        // metric=bound
@@ -71,6 +74,10 @@ int compare(const CompareOptions& options) {
   for (const auto& [metric, value] : bounds)
     if (std::find(names.begin(), names.end(), metric) == names.end()) names.push_back(metric);
 
+  if (!options.map.empty()) {
+    scene::write_png(options.map, error_map(image, reference, options.layer, options.map_top));
+    fmt::print("{}: error over the reference's mean, 0 (violet) to {:g} (yellow)\n", options.map, options.map_top);
+  }
   int code = 0;
   for (const Measure& m : measure(names, image, reference, options.layer, masks)) {
     std::string line = fmt::format("{:24} {}", m.name, text(m));
@@ -95,19 +102,30 @@ int compare(const CompareOptions& options) {
 
 void add_compare(Commands& commands) {
   const auto options = std::make_shared<CompareOptions>();
-  CLI::App* c = add_command(commands.app, "compare", "errors of an image against a reference");
-  c->add_option("IMAGE", options->image, "OpenEXR file");
-  c->add_option("REFERENCE", options->reference, "OpenEXR file; its batches, if any, say how noisy it is");
-  c->add_option("--layer", options->layer, "default mean");
-  c->add_option("--metric", options->metrics, fmt::format("any of {} (default: all)", fmt::join(metric_names(), ", ")));
-  c->add_option("--scene", options->scene, "scene file: leave out pixels that touch a light's ball");
-  add_pairs(c, "--override", options->overrides, "a value of the scene file, as for the render");
-  add_pairs(c, "--max", options->most, "metric=bound: exit 1 if the error is certainly larger");
-  c->add_option("--equal", options->alpha, "test for equality but for noise at this rate of false alarms, e.g. 1e-4")
+  CLI::App* c = add_command(commands.app, "compare", "errors of a picture against a reference, optionally with bounds");
+  c->add_option("IMAGE", options->image, "OpenEXR file to judge (required)");
+  c->add_option("REFERENCE", options->reference,
+                "OpenEXR file to compare with (required); its batches of samples, if any, tell its noise");
+  c->add_option("--layer", options->layer, "layer of the film (default mean: the whole picture)");
+  c->add_option("--metric", options->metrics,
+                fmt::format("metrics to print (default all): {}", fmt::join(metric_names(), ", ")));
+  c->add_option("--scene", options->scene, "scene file: ignore pixels that touch the sphere of a light source");
+  c->add_option("--map", options->map,
+                "write this PNG: |difference| over the reference's mean luminance, in false colours");
+  c->add_option("--map-top", options->map_top, "error that --map shows in yellow (default 1)");
+  add_pairs(c, "--override", options->overrides, "the same changes of the scene file as in the render");
+  add_pairs(c, "--max", options->most,
+            "bound on a metric, e.g. rel_l2=0.05: exit 1 if the whole 95 % interval lies above it");
+  c->add_option("--equal", options->alpha,
+                "test whether the pictures differ by more than noise, at this false-alarm rate, e.g. 1e-4")
       ->type_name("RATE");
   commands.on(c, [c, options] {
     if (c->count("--equal") && !(options->alpha > 0 && options->alpha < 1))
       throw Error(fmt::format("--equal {}: expected a rate above 0 and below 1", options->alpha));
+    if (!options->map.empty()) require_output(options->map, ".png");
+    if (c->count("--map-top") && options->map.empty()) throw Error("--map-top: expected --map, whose range it is");
+    if (!(options->map_top > 0 && std::isfinite(options->map_top)))
+      throw Error(fmt::format("--map-top {}: expected a number above 0", options->map_top));
     require(options->image, "IMAGE");
     require(options->reference, "REFERENCE");
     return compare(*options);

@@ -26,6 +26,7 @@ struct ConvertOptions {
   std::vector<std::string> files;  // in, out, in, out, ...
   std::string layer = "mean";
   double exposure = 0;
+  std::string tone = "clamp";
   std::optional<double>
       depth_scale;               // of a PNG, grey with 16 bits: the layer's first channel, this many metres are white
   std::string grid = "density";  // of an OpenVDB file
@@ -111,7 +112,7 @@ void convert(const std::string& in, const std::string& out, const ConvertOptions
     return;
   }
   if (kind_of(out) == ".png") {
-    scene::write_png(out, film, options.layer, options.exposure);
+    scene::write_png(out, film, options.layer, options.exposure, tone_of(options.tone));
     return;
   }
   static_assert(std::endian::native == std::endian::little);
@@ -150,35 +151,44 @@ int convert(const ConvertOptions& options) {
 
 void add_convert(Commands& commands) {
   const auto options = std::make_shared<ConvertOptions>();
-  CLI::App* c = add_command(commands.app, "convert",
-                            "a layer of OpenEXR files as PNG or PFM, a medium as a fogmap or a Legendre box");
+  CLI::App* c =
+      add_command(commands.app, "convert", "write a layer of a film as PNG or PFM, or a medium in another form");
   c->add_option(
       "FILES", options->files,
       "IN OUT: OpenEXR file, and .png (8-bit sRGB) or .pfm (linear floats); or OpenVDB file, and .exr: the map of its "
       "columns, whose [[medium]] and errors are printed; or OpenVDB file or scene, and .csv: a medium as a Legendre box, likewise; "
       "more pairs may follow");
-  c->add_option("--layer", options->layer, "default mean");
-  c->add_option("--exposure", options->exposure, "of a PNG, in powers of two");
-  c->add_option("--depth-scale", options->depth_scale,
-                "METRES: the PNG is grey, 16 bits, and so many are white: the depth of a [backdrop] (layer distance)");
-  c->add_option("--grid", options->grid, "of an OpenVDB file (density)");
-  c->add_option("--pixels", options->pixels, "of a map, along its longer side (64)")->check(CLI::Range(1, 8192));
-  c->add_option("--samples", options->samples, "squared: upright rays a pixel (2)")->check(CLI::Range(1, 64));
-  c->add_option("--degree", options->degree, "of a map's splines (1)")->check(CLI::Range(0, 3));
-  c->add_option("--medium", options->medium, "of a scene: name or number (0)");
-  c->add_option("--coefficients", options->coefficients, "of a Legendre box: N, or NX,NY,NZ (12)")
+  c->add_option("--layer", options->layer, "layer of the film (default mean: the whole picture)");
+  c->add_option("--exposure", options->exposure, "exposure of a PNG in powers of two (default 0)");
+  add_tone(c, options->tone);
+  c->add_option(
+      "--depth-scale", options->depth_scale,
+      "write a 16-bit grey PNG for the depth of a [backdrop], in which this many metres are white; use with --layer distance");
+  c->add_option("--grid", options->grid, "grid of an OpenVDB file (default density)");
+  c->add_option("--pixels", options->pixels, "pixels of a fogmap along its longer side (default 64)")
+      ->check(CLI::Range(1, 8192));
+  c->add_option("--samples", options->samples,
+                "vertical rays per pixel of a fogmap: the square of this number (default 2)")
+      ->check(CLI::Range(1, 64));
+  c->add_option("--degree", options->degree, "degree of a fogmap's splines (default 1)")->check(CLI::Range(0, 3));
+  c->add_option("--medium", options->medium, "medium of a scene: its name or number (default 0)");
+  c->add_option("--coefficients", options->coefficients,
+                "coefficients of a Legendre box along its axes: N, or NX,NY,NZ (default 12)")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(CLI::Range(1, 32));
-  c->add_option("--cells", options->cells, "along an axis, that its projection integrates over (24)")
+  c->add_option("--cells", options->cells,
+                "cells along each axis over which the projection onto a Legendre box integrates (default 24)")
       ->check(CLI::Range(1, 48));
-  c->add_flag("--no-lanczos", options->no_lanczos, "do not damp the waves that a jump leaves");
-  c->add_flag("--no-limiter", options->no_limiter, "do not draw it towards its mean until it is positive");
+  c->add_flag("--no-lanczos", options->no_lanczos, "do not damp the oscillations (Gibbs waves) of a Legendre box");
+  c->add_flag("--no-limiter", options->no_limiter,
+              "allow negative densities; else a Legendre box is drawn towards its mean until it is positive");
   commands.add_limit(c);
   commands.on(c, [options] {
     require(options->files.empty() ? "" : options->files.front(), "IN");
     require(options->files.size() % 2 == 0 ? options->files.back() : "", "OUT");
     check_exposure(options->exposure);
+    tone_of(options->tone);
     return convert(*options);
   });
 }

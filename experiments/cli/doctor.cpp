@@ -63,7 +63,7 @@ int doctor() {
 }  // namespace
 
 void add_doctor(Commands& commands) {
-  CLI::App* c = add_command(commands.app, "doctor", "versions, processor, graphics devices");
+  CLI::App* c = add_command(commands.app, "doctor", "print versions, processor and graphics devices");
   commands.add_gpu(c);
   c->final_callback([&commands] {
     commands.lists_devices = true;

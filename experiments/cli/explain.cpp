@@ -2,6 +2,7 @@
 
 #include "experiments/application/progress.h"
 #include "experiments/application/renderers.h"
+#include "experiments/application/solvers.h"
 #include "experiments/cli/command_line.h"
 #include "experiments/cli/commands.h"
 #include "experiments/cli/scene_option.h"
@@ -14,7 +15,10 @@ namespace {
 struct ExplainOptions {
   std::string scene, method, convert;
   Pairs settings, overrides;
+  bool verbose = false;
 };
+
+using Reasons = std::vector<std::string>;
 
 std::string range(const scene::SettingSpec& spec) {
   using Type = scene::SettingSpec::Type;
@@ -37,19 +41,23 @@ std::string condition(const scene::SettingSpec& spec) {
   return text.empty() ? "" : "; read only with " + text;
 }
 
-void explain_one(const scene::Renderer& renderer, std::shared_ptr<const scene::Scene> scene, const Pairs& given) {
-  fmt::print("\n{}: {}\n", renderer.name(), renderer.about());
-  if (const std::string device = renderer.device(); !device.empty()) fmt::print("  on {}\n", device);
-  const scene::Settings settings(renderer.settings(), given, renderer.name());
+// Prints a renderer's or solver's settings, and why it cannot do what it is given; false if it cannot.
+bool explain_component(const scene::Component& c, const scene::Settings& settings, const Reasons& reasons,
+                       const std::string& cannot) {
+  fmt::print("\n{}: {}\n", c.name(), c.about());
+  if (const std::string device = c.device(); !device.empty()) fmt::print("  on {}\n", device);
   fmt::print("  settings (name = value here; range; meaning)\n");
-  for (const scene::SettingSpec& spec : renderer.settings())
+  for (const scene::SettingSpec& spec : c.settings())
     fmt::print("    {} = {}; {}; {}{}\n", spec.name, settings.text(spec.name), range(spec), spec.doc, condition(spec));
-  const auto reasons = renderer.supports(*scene, settings);
-  if (!reasons.empty()) {
-    fmt::print("  cannot render this scene:\n");
-    for (const std::string& reason : reasons) fmt::print("    {}\n", reason);
-    return;
-  }
+  if (reasons.empty()) return true;
+  fmt::print("  {}:\n", cannot);
+  for (const std::string& reason : reasons) fmt::print("    {}\n", reason);
+  return false;
+}
+
+void explain_renderer(const scene::Renderer& renderer, std::shared_ptr<const scene::Scene> scene, const Pairs& given) {
+  const scene::Settings settings(renderer.settings(), given, renderer.name());
+  if (!explain_component(renderer, settings, renderer.supports(*scene, settings), "cannot render this scene")) return;
   Progress progress("preparing " + renderer.name());
   const auto prepared = renderer.prepare(scene, settings, progress.execution(0));
   fmt::print("  stages\n");
@@ -59,24 +67,69 @@ void explain_one(const scene::Renderer& renderer, std::shared_ptr<const scene::S
     fmt::print("    prepared  {} in {:.3g} s\n", time.name, time.seconds);
 }
 
-int explain(const ExplainOptions& options) {
-  if (!options.method.empty()) find_renderer(options.method, "--method");
-  const auto scene = load(options.scene, options.overrides, options.convert, 0);
-  fmt::print("{}: {}x{} pixels\n", scene->name, scene->width, scene->height);
-  for (const scene::Light& light : scene->lights) fmt::print("  light    {}\n", scene::light_name(light));
-  for (std::size_t i = 0; i < scene->media.size(); ++i)
-    fmt::print("  {}, {}, phase {}\n", scene::label(scene->media, i), scene::field_name(scene->media[i].field),
-               scene::phase_name(scene->media[i].phase));
-  for (const scene::Surface& surface : scene->surfaces) fmt::print("  surface  {}\n", surface.name);
-  for (const auto& renderer : all_renderers()) {
-    if (!options.method.empty() && renderer->name() != options.method) continue;
+void explain_solver(const scene::Solver& solver, const scene::FlowProblem& flow, const Pairs& given) {
+  const scene::Settings settings(solver.settings(), given, solver.name());
+  explain_component(solver, settings, solver.supports(flow, settings), "cannot solve this flow");
+}
+
+// One line for each: what it is, or the first reason why it cannot do what it is given.
+template <class Components, class Input>
+void list(const Components& components, const Input& input, const std::string& what) {
+  std::string can, cannot;
+  for (const auto& c : components) {
+    Reasons reasons;
     try {
-      explain_one(*renderer, scene, options.settings);
+      reasons = c->supports(input, scene::Settings(c->settings(), {}, c->name()));
     } catch (const Unavailable& reason) {
-      if (!options.method.empty()) throw;
+      reasons.push_back(fmt::format("not available on this machine: {}", reason.what()));
+    }
+    const std::string more = reasons.size() > 1 ? fmt::format(" (and {} more)", reasons.size() - 1) : "";
+    (reasons.empty() ? can : cannot) +=
+        fmt::format("  {:28} {}{}\n", c->name(), reasons.empty() ? c->about() : reasons.front(), more);
+  }
+  if (!can.empty()) fmt::print("\ncan {}:\n{}", what, can);
+  if (!cannot.empty()) fmt::print("\ncannot {}:\n{}", what, cannot);
+  fmt::print("\nSettings and stages: --method NAME for one of them, --verbose for all.\n");
+}
+
+// Each component, or the one that was asked for; what this machine lacks is told.
+template <class Components, class Explain>
+void explain_each(const Components& components, const std::string& method, const Explain& explain_one) {
+  for (const auto& c : components) {
+    if (!method.empty() && c->name() != method) continue;
+    try {
+      explain_one(*c);
+    } catch (const Unavailable& reason) {
+      if (!method.empty()) throw;
       fmt::print("  not available on this machine: {}\n", reason.what());  // the others go on
     }
   }
+}
+
+int explain_flow(const ExplainOptions& options) {
+  if (!options.method.empty()) find_solver(options.method, "--method");
+  if (!options.convert.empty()) throw Error("--convert: a flow has no media");
+  const scene::FlowProblem flow = scene::load_flow(options.scene, options.overrides);
+  fmt::print("{}\n{}", flow.name, describe(flow));
+  if (options.method.empty() && !options.verbose)
+    list(all_solvers(), flow, "solve this flow");
+  else
+    explain_each(all_solvers(), options.method,
+                 [&](const scene::Solver& solver) { explain_solver(solver, flow, options.settings); });
+  return 0;
+}
+
+int explain(const ExplainOptions& options) {
+  if (options.method.empty() && !options.settings.empty()) throw Error("--set: expected --method, whose setting it is");
+  if (is_flow_file(options.scene)) return explain_flow(options);
+  if (!options.method.empty()) find_renderer(options.method, "--method");
+  const auto scene = load(options.scene, options.overrides, options.convert, 0);
+  fmt::print("{}\n{}", scene->name, describe(*scene));
+  if (options.method.empty() && !options.verbose)
+    list(all_renderers(), *scene, "render this scene");
+  else
+    explain_each(all_renderers(), options.method,
+                 [&](const scene::Renderer& renderer) { explain_renderer(renderer, scene, options.settings); });
   return 0;
 }
 
@@ -85,11 +138,13 @@ int explain(const ExplainOptions& options) {
 void add_explain(Commands& commands) {
   const auto options = std::make_shared<ExplainOptions>();
   CLI::App* c =
-      add_command(commands.app, "explain", "what each renderer would compute or leave out in a scene, and why");
-  c->add_option("SCENE", options->scene, "scene file");
-  c->add_option("--method,-m", options->method, "only this one");
-  add_pairs(c, "--set", options->settings, "a setting of the method");
-  add_pairs(c, "--override", options->overrides, "a value of the scene file");
+      add_command(commands.app, "explain",
+                  "which methods can render a scene or solve a flow, their settings, and what they leave out");
+  c->add_option("SCENE", options->scene, "scene file or flow file (required)");
+  c->add_option("--method,-m", options->method, "settings and stages of this renderer");
+  c->add_flag("--verbose,-v", options->verbose, "settings and stages of all renderers");
+  add_pairs(c, "--set", options->settings, "change a setting of the method");
+  add_pairs(c, "--override", options->overrides, "change a value of the scene file");
   add_convert_option(c, options->convert);
   commands.add_limit(c);
   commands.add_data(c);

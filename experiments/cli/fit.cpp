@@ -5,6 +5,7 @@
 #include "experiments/application/progress.h"
 #include "experiments/cli/command_line.h"
 #include "experiments/cli/commands.h"
+#include "scene/load/parse_toml.h"
 
 namespace airlight::experiments::cli {
 namespace {
@@ -41,6 +42,12 @@ int fit(const FitOptions& options) {
     fmt::print(
         "{}: {} Gaussians, squared error {:.3g} %, rms {:.3g} % of the greatest density where filled, residual {} bytes, {:.3g} s\n",
         f.name, f.gaussians, 100 * f.errors.squared_ratio, 100 * f.errors.rms_filled, f.residual_bytes, f.seconds);
+  if (!report.frames.empty()) {
+    const std::filesystem::path file = std::filesystem::path(options.out) / report.frames.back().name;
+    fmt::print("# the last frame as a medium; sigma_t is the extinction at density 1 [1/m]\n");
+    fmt::print("[[medium]]\ntype = \"fitted\"\nsigma_t = 1\ngaussians = {}\nresidual = {}\n",
+               scene::load::toml_string(file.string() + ".csv"), scene::load::toml_string(file.string() + ".residual"));
+  }
   fmt::print("{}: {} frames, {} of them from an earlier run; unit {:.6g} m\n", options.out, report.frames.size(),
              report.resumed, report.unit);
   return 0;
@@ -51,29 +58,35 @@ int fit(const FitOptions& options) {
 void add_fit(Commands& commands) {
   const auto options = std::make_shared<FitOptions>();
   CLI::App* c = add_command(commands.app, "fit",
-                            "smoke as sums of Gaussians and small residuals: a frame, or a sequence of them");
+                            "fit smoke by sums of Gaussians and a compressed residual: one frame or a sequence");
   c->add_option(
       "FILES", options->files,
-      "OpenVDB files in the order of time, or scenes with a medium that is a grid; the results of FILE are called after it");
-  c->add_option("--out,-o", options->out, "folder; what an earlier run left there is gone on with");
-  c->add_option("--gaussians,-n", options->gaussians, "of the first frame (1000)");
-  c->add_option("--grid", options->grid, "of an OpenVDB file (density)");
-  c->add_option("--medium", options->medium, "of a scene: name or number (0)");
+      "OpenVDB files in the order of time, or scenes with a grid medium (required); results are named after each file");
+  c->add_option("--out,-o", options->out,
+                "output folder (required); an interrupted run continues from what it finds there");
+  c->add_option("--gaussians,-n", options->gaussians, "number of Gaussians in the first frame (default 1000)");
+  c->add_option("--grid", options->grid, "grid of an OpenVDB file (default density)");
+  c->add_option("--medium", options->medium, "medium of a scene: its name or number (default 0)");
   c->add_option(
       "--unit", options->unit,
-      "METRES: of widths, which are 0.015 to 0.09 of it (default: the cube root of the volume of the box that all frames fill)");
-  c->add_option("--delete", options->deleted, "so many of the least significant before each later frame (3)");
-  c->add_option("--insert", options->inserted, "at most so many into each later frame that needs them (8)");
-  c->add_option("--allowed", options->allowed,
-                "a later frame needs more where its squared error is this many times that of the first (1.1)");
-  c->add_flag("--keep", options->keep,
-              "send none to another place in later frames, as the publication: fewer new ones, greater errors");
-  c->add_option("--threshold", options->threshold, "residual: levels of this size or less are dropped (0)")
+      "length in metres; widths of Gaussians are 0.015 to 0.09 of it (default: cube root of the volume of the smoke's bounding box)");
+  c->add_option("--delete", options->deleted,
+                "remove this many of the least significant Gaussians before each later frame (default 3)");
+  c->add_option("--insert", options->inserted,
+                "insert at most this many Gaussians into a later frame that needs them (default 8)");
+  c->add_option(
+      "--allowed", options->allowed,
+      "a later frame needs more Gaussians if its squared error exceeds that of the first frame by this factor (default 1.1)");
+  c->add_flag(
+      "--keep", options->keep,
+      "do not move Gaussians to places of large error in later frames (as in the paper): fewer new Gaussians, larger errors");
+  c->add_option("--threshold", options->threshold, "drop levels of the residual of this size or less (default 0)")
       ->check(CLI::Range(0, 126));
   std::vector<std::string> methods;
   for (const auto& [name, method] : scene::fit_methods()) methods.push_back(name);
-  c->add_option("--method,-m", options->method, fmt::format("one of {}", fmt::join(methods, ", ")));
-  c->add_option("--threads", options->threads, "0: all")->check(CLI::Range(0, 4096));
+  c->add_option("--method,-m", options->method,
+                fmt::format("optimiser (default gauss_newton): {}", fmt::join(methods, ", ")));
+  c->add_option("--threads", options->threads, "number of threads (default 0: all)")->check(CLI::Range(0, 4096));
   commands.add_limit(c);
   commands.add_data(c);
   commands.on(c, [options] {

@@ -57,21 +57,22 @@ void apply_shared_options(const Commands& commands) {
   if (gpu::small_letters(*commands.gpu) != "none" && !commands.lists_devices) gpu::Context::get();
 }
 
+// The commands by what they are for, as --help lists them.
+const std::vector<std::pair<std::string, std::vector<void (*)(Commands&)>>> command_groups{
+    {"Pictures", {add_render, add_merge, add_compare}},
+    {"Which method", {add_explain, add_choose}},
+    {"Media and flows", {add_info, add_convert, add_fit, add_author, add_simulate}},
+    {"Experiments", {add_experiment, add_gates, add_verify}},
+    {"This machine", {add_doctor}}};
+
 int dispatch(int argc, char** argv) {
   Commands commands;
-  add_render(commands);
-  add_merge(commands);
-  add_compare(commands);
-  add_convert(commands);
-  add_fit(commands);
-  add_simulate(commands);
-  add_experiment(commands);
-  add_gates(commands);
-  add_explain(commands);
-  add_choose(commands);
-  add_author(commands);
-  add_verify(commands);
-  add_doctor(commands);
+  for (const auto& [group, adders] : command_groups) {
+    for (const auto add : adders) {
+      add(commands);
+      commands.app.get_subcommands({}).back()->group(group);
+    }
+  }
   if (const std::optional<int> done = parse(commands.app, argc, argv)) return *done;
   if (!commands.action)
     throw Error(fmt::format("expected a command: {}", fmt::join(command_names(commands.app), ", ")));

@@ -25,6 +25,7 @@ struct RenderOptions {
   Pairs settings, overrides;
   int threads = 0;
   double exposure = 0;
+  std::string tone = "clamp";
   bool distance = false;  // a layer `distance` too
 };
 
@@ -49,7 +50,7 @@ void write(const RenderOptions& options, const scene::Renderer& renderer, const 
   metadata["commit"] = commit();
   metadata.try_emplace("seconds", fmt::format("{:.3f}", seconds));
   scene::write_exr(options.out, film);
-  if (!options.png.empty()) scene::write_png(options.png, film, "mean", options.exposure);
+  if (!options.png.empty()) scene::write_png(options.png, film, "mean", options.exposure, tone_of(options.tone));
   if (const auto warning = metadata.find("warning"); warning != metadata.end())
     say(fmt::format("{}: warning: {}", options.scene, warning->second));
 }
@@ -85,6 +86,8 @@ int render(const RenderOptions& options) {
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (options.distance) add_distance(*scene, film);
   write(options, renderer, *scene, settings, seconds, film);
+  fmt::print("{}{}{}: {}, {} x {} pixels, {:.3g} s\n", options.out, options.png.empty() ? "" : ", ", options.png,
+             renderer.name(), film.width, film.height, seconds);
   if (not_kept) say(fmt::format("warning: {}; {} is written, its samples are not kept", not_kept->what(), options.out));
   check_interrupted();
   return not_kept ? not_kept->exit_code() : 0;
@@ -95,20 +98,24 @@ int render(const RenderOptions& options) {
 void add_render(Commands& commands) {
   const auto options = std::make_shared<RenderOptions>();
   CLI::App* c = add_command(commands.app, "render", "render a scene with a method or a reference");
-  c->add_option("SCENE", options->scene, "scene file (scene/README.md)");
-  c->add_option("--method,-m", options->method, fmt::format("one of {}", fmt::join(renderer_names(), ", ")));
-  c->add_option("--out,-o", options->out, "OpenEXR file to write");
-  c->add_option("--png", options->png, "also write an 8-bit preview");
-  c->add_option("--exposure", options->exposure, "of the preview, in powers of two");
+  c->add_option("SCENE", options->scene, "scene file (required; its format is documented in scene/README.md)");
+  c->add_option("--method,-m", options->method,
+                fmt::format("method or reference that renders (required): {}", fmt::join(renderer_names(), ", ")));
+  c->add_option("--out,-o", options->out, "OpenEXR file to write (required)");
+  c->add_option("--png", options->png, "also write this 8-bit PNG preview");
+  c->add_option("--exposure", options->exposure, "exposure of the preview in powers of two (default 0)");
+  add_tone(c, options->tone);
   c->add_flag(
       "--distance", options->distance,
-      "also write where the rays of pixel centres end, in metres along them, 0 where they do not: layer distance");
-  c->add_option("--threads", options->threads, "0: all")->check(CLI::Range(0, 4096));
-  c->add_option("--samples", options->samples, "N, or A..B: a range to be merged (path_tracer)");
+      "also write a layer `distance`: metres along the ray of each pixel's centre to the first surface, 0 without one");
+  c->add_option("--threads", options->threads, "number of threads (default 0: all)")->check(CLI::Range(0, 4096));
+  c->add_option("--samples", options->samples,
+                "samples per pixel N, or a range A..B that `airlight merge` joins with others (path_tracer only)");
   c->add_option("--cache", options->cache,
-                "folder where samples are kept: goes on where an earlier render stopped (path_tracer)");
-  add_pairs(c, "--set", options->settings, "a setting of the method (airlight explain lists them)");
-  add_pairs(c, "--override", options->overrides, "a value of the scene file, e.g. film.width=64");
+                "folder that keeps samples, so that a stopped render continues (path_tracer only)");
+  add_pairs(c, "--set", options->settings,
+            "change a setting of the method (`airlight explain SCENE -m METHOD` lists them)");
+  add_pairs(c, "--override", options->overrides, "change a value of the scene file, e.g. film.width=64");
   add_convert_option(c, options->convert);
   commands.add_limit(c);
   commands.add_data(c);
@@ -118,6 +125,7 @@ void add_render(Commands& commands) {
     require(options->method, "--method");
     require(options->out, "--out");
     check_exposure(options->exposure);
+    tone_of(options->tone);
     return render(*options);
   });
 }

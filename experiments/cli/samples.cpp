@@ -88,11 +88,11 @@ int merge(const MergeOptions& options) {
 
 void add_merge(Commands& commands) {
   const auto options = std::make_shared<MergeOptions>();
-  CLI::App* c = add_command(commands.app, "merge", "join ranges of samples to one picture");
-  c->add_option("SCENE", options->scene, "scene file that the parts were rendered from");
-  c->add_option("PART", options->parts, "files written by render --samples A..B: OUT.samples");
-  c->add_option("--out,-o", options->out, "OpenEXR file to write");
-  add_pairs(c, "--override", options->overrides, "a value of the scene file, as for the parts");
+  CLI::App* c = add_command(commands.app, "merge", "join ranges of samples into one picture");
+  c->add_option("SCENE", options->scene, "scene file that the parts were rendered from (required)");
+  c->add_option("PART", options->parts, "files OUT.samples that `render --samples A..B` wrote (required)");
+  c->add_option("--out,-o", options->out, "OpenEXR file to write (required)");
+  add_pairs(c, "--override", options->overrides, "the same changes of the scene file as in the render of the parts");
   commands.add_limit(c);
   commands.add_data(c);
   commands.on(c, [options] {

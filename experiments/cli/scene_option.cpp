@@ -8,7 +8,9 @@
 #include "experiments/application/interrupt.h"
 #include "experiments/application/say.h"
 #include "scene/base/error.h"
+#include "scene/base/read_file.h"
 #include "scene/convert/medium_form.h"
+#include "scene/load/parse_toml.h"
 
 namespace airlight::experiments::cli {
 namespace {
@@ -33,9 +35,33 @@ scene::MediumConversion conversion_of(const std::string& text) {
 
 void add_convert_option(CLI::App* command, std::string& text) {
   command->add_option(option, text,
-                      "turn all media into another form first: to=gaussians,count=600, to=legendre,order=12, "
-                      "to=fogmap,cells=64, to=grid,voxels=64 or to=homogeneous; cut=false: Gaussians without an end; "
-                      "lamps=true: directional lights as far point lights");
+                      "convert all media first: to=gaussians,count=600 | to=legendre,order=12 | to=fogmap,cells=64 | "
+                      "to=grid,voxels=64 | to=homogeneous; append cut=false for Gaussians that are not cut off, "
+                      "lamps=true to replace suns by far point lights");
+}
+
+std::string describe(const scene::Scene& scene) {
+  std::string out = fmt::format("  {} x {} pixels\n", scene.width, scene.height);
+  for (const scene::Light& light : scene.lights) out += fmt::format("  light    {}\n", scene::light_name(light));
+  for (std::size_t i = 0; i < scene.media.size(); ++i)
+    out += fmt::format("  {}, {}, phase {}\n", scene::label(scene.media, i), scene::field_name(scene.media[i].field),
+                       scene::phase_name(scene.media[i].phase));
+  for (const scene::Surface& surface : scene.surfaces) out += fmt::format("  surface  {}\n", surface.name);
+  return out;
+}
+
+std::string describe(const scene::FlowProblem& flow) {
+  const auto corner = [](const Vec3& v) { return fmt::format("({:g}, {:g}, {:g})", v[0], v[1], v[2]); };
+  return fmt::format("  flow in {} dimensions, box from {} to {} m\n", flow.dimensions, corner(flow.box.lo),
+                     corner(flow.box.hi)) +
+         fmt::format("  {:g} s at {:g} frames a second, viscosity {:g} m^2/s\n", flow.duration, flow.frame_rate,
+                     flow.viscosity) +
+         fmt::format("  densities: {}; sources: {}; obstacles: {}; sets of particles: {}\n", 1 + flow.densities.size(),
+                     flow.sources.size(), flow.obstacles.size(), flow.particles.size());
+}
+
+bool is_flow_file(const std::string& path) {
+  return scene::load::parse_toml(scene::read_whole_file(path, scene::load::most_toml_bytes), path).contains("flow");
 }
 
 std::shared_ptr<const scene::Scene> load(const std::string& path, const Pairs& overrides, const std::string& convert,

@@ -93,27 +93,28 @@ int simulate(const SimulateOptions& options) {
 
 void add_simulate(Commands& commands) {
   const auto options = std::make_shared<SimulateOptions>();
-  CLI::App* c =
-      add_command(commands.app, "simulate", "solve a flow problem: frames as OpenVDB files, and their history");
-  c->add_option("PROBLEM", options->problem, "file with a [flow]");
-  c->add_option("--method,-m", options->method, "stable_fluids (default)");
-  c->add_option("--out,-o", options->out, "folder; what an earlier run left there is gone on with");
-  add_pairs(c, "--set", options->settings, "a setting of the method");
-  add_pairs(c, "--override", options->overrides, "a value of the problem file");
+  CLI::App* c = add_command(commands.app, "simulate", "simulate a flow: frames as OpenVDB files, their history as CSV");
+  c->add_option("PROBLEM", options->problem, "flow file with a table [flow] (required unless --sequence is given)");
+  c->add_option("--method,-m", options->method,
+                "solver: stable_fluids (default) or legendre_fluids, on the device legendre_fluids_gpu");
+  c->add_option("--out,-o", options->out,
+                "output folder (required); an interrupted run continues from what it finds there");
+  add_pairs(c, "--set", options->settings, "change a setting of the method");
+  add_pairs(c, "--override", options->overrides, "change a value of the flow file");
   c->add_option(
       "--sequence", options->sequence,
-      "instead of PROBLEM and --out: one of experiments/sequences.toml, where it is not there; prints its files");
+      "simulate a sequence of experiments/sequences.toml, if it is not cached, and print its files; excludes PROBLEM and --out");
   c->add_option(
       "--scene", options->scene,
-      "draws each frame: a scene whose first medium that extinguishes becomes the flow's; NAME.0000.png, ...");
+      "also draw each frame as NAME.0000.png, ...: a scene file whose first medium is replaced by the flow's smoke");
   c->add_option(
       "--renderer", options->renderer,
-      "renderer of --scene (default: legendre_fluids for both methods of that name, else ray_marcher); legendre_fluids_gpu draws "
-      "flows of that name where they lie, what is below 0 towards the mean");
-  add_pairs(c, "--renderer-set", options->renderer_settings, "a setting of the renderer");
-  c->add_option("--exposure", options->exposure, "of the pictures, in powers of two");
-  c->add_option("--profile", options->profile, "of that sequence: quick (default) or paper");
-  c->add_option("--threads", options->threads, "0: all")->check(CLI::Range(0, 4096));
+      "renderer of --scene (default ray_marcher; legendre_fluids for Legendre flows); legendre_fluids_gpu draws Legendre flows "
+      "without a copy from the device");
+  add_pairs(c, "--renderer-set", options->renderer_settings, "change a setting of the renderer");
+  c->add_option("--exposure", options->exposure, "exposure of the pictures in powers of two (default 0)");
+  c->add_option("--profile", options->profile, "profile of --sequence: quick (default) or paper");
+  c->add_option("--threads", options->threads, "number of threads (default 0: all)")->check(CLI::Range(0, 4096));
   commands.add_limit(c);
   commands.add_data(c);
   commands.on(c, [options] {

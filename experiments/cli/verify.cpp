@@ -21,12 +21,13 @@ struct VerifyOptions {
 
 void add_verify(Commands& commands) {
   const auto options = std::make_shared<VerifyOptions>();
-  CLI::App* c = add_command(commands.app, "verify", "recompute oracle vectors");
-  c->add_option("FILE", options->files, "JSON files");
+  CLI::App* c = add_command(commands.app, "verify",
+                            "recompute the oracle vectors and compare: expected, got, relative error, tolerance");
+  c->add_option("FILE", options->files, "JSON files of oracle vectors (required), e.g. tests/vectors/*.json");
   c->add_option("--kind", options->kind, "only vectors of this kind");
   c->add_option("--profile", options->profile, "quick (default) or paper");
   c->add_flag("--device", options->device,
-              "compute the vectors by the device code; list vectors that it does not compute");
+              "compute the vectors on the graphics device; list those that no device code computes");
   commands.add_gpu(c);
   commands.on(c, [options, &commands] {
     if (options->files.empty()) throw Error("FILE is missing; see --help");

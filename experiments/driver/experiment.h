@@ -117,6 +117,7 @@ struct Experiment {
   TimingRule timing;
   bool in_tests = false;            // its gates are judged by scripts/test
   bool stages = false;              // a table of the time of every stage
+  bool left_out = false;            // every row says what its picture lacks
   std::vector<Moving::What> moves;  // of the frame after each of these moved every row says the time
   bool orders = false;              // a table of how fast errors fall with the swept setting
   std::vector<PlotCase> plots;

@@ -21,6 +21,8 @@ class ExperimentReader {
 
   // Scenes and methods of the experiment that `like` names, beside those of this file.
   void take_over(const TableReader& top);
+  // Replaces the method's renderer by its twin on the device.
+  void to_device(toml::table& method, const std::string& name, const TableReader& reader) const;
 
   const ExperimentKind& kind() const { return *experiment_.kind; }
   std::string position(const std::string& key) const;
@@ -52,6 +54,8 @@ class ExperimentReader {
   // Whose speed-up is expected: the table has it, with its interval.
   std::string baseline_of(const TableReader& reader, const ExpectedCase& e) const;
   void check_summary(const TableReader& top) const;
+  // Only checks [[claim]] and [[erratum]]: scripts/figures makes tables of them.
+  void claims(const TableReader& top) const;
 
   Folders folders_;
   std::string file_;

@@ -9,6 +9,7 @@
 #include "experiments/driver/committed_references.h"
 #include "experiments/driver/comparisons.h"
 #include "experiments/driver/keeper.h"
+#include "experiments/driver/left_out.h"
 #include "experiments/driver/next_frames.h"
 #include "experiments/driver/pictures.h"
 #include "experiments/driver/plan.h"
@@ -116,6 +117,7 @@ MadeRow make_row(const RowKeeper& keeper, std::shared_ptr<const Judged> judged, 
   if (!planned.refused.empty()) throw scene::NotSupported("", planned.refused);
   const std::shared_ptr<scene::Prepared> prepared = prepare(e, planned, execution, row.prepare_seconds);
   row.device = planned.renderer->device();
+  if (e.left_out) row.left_out = left_out(prepared->stages());
   const scene::Execution timed = as_timed(execution, row);
   if (!row.device.empty()) prepared->render(judged->view, timed);  // drivers compile shaders at first use
   const auto moving = m.moving ? std::make_shared<NextFrames>(prepared, planned.scene, *m.moving) : nullptr;
@@ -187,6 +189,7 @@ const scene::Component& Images::find_component(const std::string& name, const st
 void Images::read(const TableReader& top, Experiment& e) const {
   e.layer = top.text("layer", "mean");
   e.stages = top.flag("stages", false);
+  e.left_out = top.flag("left_out", false);
   if (top.flag("moves", false)) e.moves = {Moving::What::camera, Moving::What::lights, Moving::What::media};
 }
 

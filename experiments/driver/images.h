@@ -9,7 +9,7 @@ class Images : public ExperimentKind {
   std::string name() const override { return "images"; }
   std::string component_key() const override { return "renderer"; }
   const scene::Component& find_component(const std::string& name, const std::string& position) const override;
-  std::vector<std::string> keys() const override { return {"stages", "reference", "layer", "moves"}; }
+  std::vector<std::string> keys() const override { return {"stages", "reference", "layer", "moves", "left_out"}; }
   void read(const TableReader& top, Experiment&) const override;
   std::vector<std::string> method_keys() const override {
     return {"layer", "picture_only", "count_noise", "moving", "convert"};

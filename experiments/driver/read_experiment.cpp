@@ -30,7 +30,9 @@ ExperimentReader::ExperimentReader(const Folders& folders, const std::string& id
 void ExperimentReader::take_over(const TableReader& top) {
   auto reader = top.table("like");
   if (!reader) return;
-  reader->allow({"experiment", "without"});
+  reader->allow({"experiment", "without", "device"});
+  const bool device = reader->flag("device", false);
+  if (device && !kind().draws_pictures()) reader->fail("device", "only renderers have a twin on the device");
   const std::vector<std::string> without = strings(*toml_.get("like")->as_table(), "without", *reader);
   std::set<std::string> left(without.begin(), without.end());
   const std::string id = reader->text("experiment");
@@ -44,15 +46,29 @@ void ExperimentReader::take_over(const TableReader& top) {
     toml::array* ours = toml_.get_as<toml::array>(list);
     if (!ours) ours = toml_.insert(list, toml::array()).first->second.as_array();
     for (toml::node& node : *theirs) {
-      const auto* table = node.as_table();
+      auto* table = node.as_table();
       const std::string name = table ? (*table)["name"].value_or(std::string()) : std::string();
-      if (list == "method" && std::find(without.begin(), without.end(), name) != without.end())
+      if (list == "method" && std::find(without.begin(), without.end(), name) != without.end()) {
         left.erase(name);
-      else
-        ours->push_back(std::move(node));
+        continue;
+      }
+      if (list == "method" && device && table) to_device(*table, name, *reader);
+      ours->push_back(std::move(node));
     }
   }
   if (!left.empty()) reader->fail("without", fmt::format("{} has no method '{}'", id, *left.begin()));
+}
+
+void ExperimentReader::to_device(toml::table& method, const std::string& name, const TableReader& reader) const {
+  const std::string key = kind().component_key();
+  const std::string twin = method[key].value_or(std::string()) + "_gpu";
+  try {
+    kind().find_component(twin, "");
+  } catch (const Error&) {
+    reader.fail("device",
+                fmt::format("there is no renderer '{}': leave out method '{}' (without = [...])", twin, name));
+  }
+  method.insert_or_assign(key, twin);
 }
 
 Experiment ExperimentReader::read() {
@@ -63,8 +79,9 @@ Experiment ExperimentReader::read() {
     kinds.push_back(kind->name());
     if (toml_["kind"].value_or(std::string()) == kind->name()) experiment_.kind = kind;
   }
-  std::vector<std::string> keys{"kind",   "title", "paper", "about",    "summary",  "metrics", "in_tests", "scene",
-                                "method", "plot",  "gate",  "speed_up", "expected", "profile", "timing",   "like"};
+  std::vector<std::string> keys{"kind",     "title",   "paper",  "about", "summary", "metrics",
+                                "in_tests", "scene",   "method", "plot",  "gate",    "speed_up",
+                                "expected", "profile", "timing", "like",  "claim",   "erratum"};
   const std::vector<std::string> of_kind = kind().keys();
   keys.insert(keys.end(), of_kind.begin(), of_kind.end());
   top.allow(keys);
@@ -87,6 +104,7 @@ Experiment ExperimentReader::read() {
   names_apart();
   checks(top);
   if (top.has("summary")) check_summary(top);
+  claims(top);
   return experiment_;
 }
 

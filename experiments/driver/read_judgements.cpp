@@ -129,8 +129,12 @@ void ExperimentReader::has_figures(const TableReader& reader, const GateCase& ga
     return kind().draws_pictures() && !name.empty() && find_renderer(name, "gate").monte_carlo();
   };
   bool found = false;
+  std::vector<std::string> settings;  // that the method has there
   for (const SceneCase& c : experiment_.scenes)
     for (const MethodCase& m : experiment_.methods) {
+      if (is_on(m, c) && m.name == gate.method && judges(gate, c.name, m.name, gate.setting) &&
+          std::find(settings.begin(), settings.end(), m.setting) == settings.end())
+        settings.push_back(m.setting);
       if (!judges(gate, c.name, m.name, m.setting) || !is_on(m, c)) continue;
       found = true;
       if (of_time_or_work || !kind().draws_pictures()) continue;
@@ -142,9 +146,12 @@ void ExperimentReader::has_figures(const TableReader& reader, const GateCase& ga
       if (gate.metric == "wrong" && noisy_reference) wrong("wrong is not defined against a noisy reference");
     }
   if (!found)
-    wrong(fmt::format("there is no row of method '{}'{}{}", gate.method,
+    wrong(fmt::format("there is no row of method '{}'{}{}{}", gate.method,
                       gate.setting.empty() ? "" : fmt::format(" with setting {}", gate.setting),
-                      gate.scene.empty() ? "" : fmt::format(" on scene '{}'", gate.scene)));
+                      gate.scene.empty() ? "" : fmt::format(" on scene '{}'", gate.scene),
+                      gate.setting.empty() || settings.empty()
+                          ? ""
+                          : fmt::format("; its settings are {}", fmt::join(settings, ", "))));
 }
 
 void ExperimentReader::checks(const TableReader& top) {
@@ -223,6 +230,34 @@ void ExperimentReader::check_summary(const TableReader& top) const {
     });
   } catch (const Error& error) {
     top.fail("summary", fmt::format("summary: {}", error.what()));
+  }
+}
+
+void ExperimentReader::claims(const TableReader& top) const {
+  const auto paper_exists = [&](const TableReader& reader) {
+    if (reader.has("group") && !fs::is_directory(folders_.root / "experiments" / reader.file_name("group")))
+      reader.expected("group", "a folder of experiments/");
+  };
+  for (auto& [table, reader] : lists(top, "claim")) {
+    reader.allow({"where", "claim", "published", "improved", "verdict", "holds", "group", "table"});
+    for (const std::string key : {"where", "claim", "verdict"}) reader.text(key);
+    for (const std::string key : {"published", "improved", "holds", "table"}) reader.text(key, "");
+    paper_exists(reader);
+    const std::string verdict = reader.text("verdict");
+    const std::string short_verdict = verdict.substr(0, verdict.find(':'));
+    const std::vector<std::string> verdicts{"reproduced", "not reproduced", "failure reproduced", "not comparable"};
+    if (!short_verdict.starts_with("holds only where ") &&
+        std::find(verdicts.begin(), verdicts.end(), short_verdict) == verdicts.end())
+      reader.expected("verdict", fmt::format("{} or holds only where ..., with : and a reason where that helps",
+                                             fmt::join(verdicts, ", ")));
+    if (short_verdict != "not comparable" && !reader.has("holds"))
+      reader.fail("", "holds is missing: the condition on the tables that makes the verdict true");
+  }
+  for (auto& [table, reader] : lists(top, "erratum")) {
+    reader.allow({"where", "printed", "right", "proof", "holds", "group", "table"});
+    for (const std::string key : {"where", "printed", "right", "proof"}) reader.text(key);
+    for (const std::string key : {"holds", "table"}) reader.text(key, "");
+    paper_exists(reader);
   }
 }
 

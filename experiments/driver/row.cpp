@@ -68,6 +68,7 @@ json to_json(const Row& row) {
             {"exposure", row.exposure}};
   for (const auto& [what, after] : row.moved) j["moved"][what] = {{"seconds", after.seconds}, {"anew", after.anew}};
   if (row.parameter) j["parameter"] = *row.parameter;
+  if (!row.left_out.empty()) j["left_out"] = row.left_out;
   if (row.map) j["map"] = to_json(*row.map);
   if (!row.columns.empty()) j["columns"] = row.columns;
   return j;
@@ -110,6 +111,7 @@ Row row_from_json(const json& j) {
   if (j.contains("parameter")) row.parameter = j.at("parameter").get<double>();
   if (j.contains("moved"))
     for (const auto& [what, after] : j.at("moved").items()) row.moved[what] = {after.at("seconds"), after.at("anew")};
+  row.left_out = j.value("left_out", "");
   if (j.contains("map")) row.map = map_from_json(j.at("map"));
   if (j.contains("columns"))
     for (const auto& [name, values] : j.at("columns").items())

@@ -19,6 +19,7 @@ struct Row {
   std::string scene_hash, reference_key;
   std::optional<double> parameter;
   std::vector<Measure> measures;
+  std::string left_out;       // what the picture lacks (left_out.h), where the experiment asks
   std::string note;           // why there are no figures: the method cannot render this scene
   bool unavailable = false;   // they need hardware or a library that is not here, and that nobody asked for by name
   int width = 0, height = 0;  // pixels of the scene's film

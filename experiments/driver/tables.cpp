@@ -80,6 +80,7 @@ std::vector<Cells> summary(const Outcome& outcome) {
   const std::vector<bool> best = on_front(outcome);
   if (compared) head.push_back("front");
   if (device) head.push_back("device");
+  if (outcome.experiment.left_out) head.push_back("leaves out");
   if (note) head.push_back("note");
   std::vector<Cells> lines{head};
   for (std::size_t i = 0; i < outcome.rows.size(); ++i) {
@@ -99,6 +100,7 @@ std::vector<Cells> summary(const Outcome& outcome) {
     for (const RowColumn& column : preparations) line.push_back(column.text(row));
     if (compared) line.push_back(best[i] ? "yes" : "");
     if (device) line.push_back(device_text(row));
+    if (outcome.experiment.left_out) line.push_back(row.left_out);
     if (note) line.push_back(row.note);
     lines.push_back(line);
   }
@@ -165,6 +167,7 @@ std::string table_csv(const Outcome& outcome) {
   if (downloads) head.push_back("download_seconds");
   for (const Moving::What what : outcome.experiment.moves) head.push_back(name_of(what) + "_seconds");
   for (const std::string& counter : counters) head.push_back("counter." + counter);
+  if (outcome.experiment.left_out) head.push_back("left_out");
   head.push_back("note");
   std::string out = csv_line(head);
   for (const Row& row : outcome.rows) {
@@ -193,6 +196,7 @@ std::string table_csv(const Outcome& outcome) {
       const auto found = row.counters.find(counter);
       line.push_back(found == row.counters.end() ? "" : number(found->second));
     }
+    if (outcome.experiment.left_out) line.push_back(row.left_out);
     line.push_back(row.note);
     out += csv_line(line);
   }

@@ -62,8 +62,13 @@ std::vector<scene::Stage> PreparedTracer::stages() const {
   for (const TrackedMedium& medium : world_.media().tracked()) heterogeneous = heterogeneous || !medium.homogeneous;
   const bool geometry = world_.scene().geometry != nullptr;
   const bool environment = !world_.lights().environments().empty();
+  const bool capped = std::min(o.max_order < 0 ? 2 : o.max_order, o.max_events < 0 ? 2 : o.max_events) < 2;
   return {
       {"collisions", fog, fog ? "there is a medium" : "no medium has extinction"},
+      {"multiple scattering", fog && !capped,
+       !fog     ? "no medium has extinction"
+       : capped ? "max_order or max_events stops paths before the second scattering"
+                : "there is a medium"},
       {"supergrid", heterogeneous && o.supergrid,
        !heterogeneous ? "every medium is homogeneous: exact free flights"
        : o.supergrid  ? "a medium varies in space"

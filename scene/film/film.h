@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/film/tone_curve.h"
 #include "scene/math/types.h"
 
 namespace airlight::scene {
@@ -47,7 +48,8 @@ void write_exr(const std::string& path, const Film&, bool any_value = false);
 // decoded or than 65536 pixels a side, and on a layer that lacks a channel.
 Film read_exr(const std::string& path, std::size_t max_bytes = std::size_t(4) << 30);
 
-// 8-bit sRGB preview of a layer times 2^exposure, clamped, NaN in magenta; atomic.
-void write_png(const std::string& path, const Film&, const std::string& layer = "mean", double exposure = 0);
+// 8-bit sRGB preview of a layer times 2^exposure through a tone curve, NaN in magenta; atomic.
+void write_png(const std::string& path, const Film&, const std::string& layer = "mean", double exposure = 0,
+               Tone = Tone::clamp);
 
 }  // namespace airlight::scene

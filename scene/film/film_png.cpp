@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <png.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "scene/base/atomic_file.h"
@@ -17,7 +16,7 @@ double srgb(double linear) { return linear <= 0.0031308 ? 12.92 * linear : 1.055
 
 }  // namespace
 
-void write_png(const std::string& path, const Film& film, const std::string& layer, double exposure) {
+void write_png(const std::string& path, const Film& film, const std::string& layer, double exposure, Tone tone) {
   const std::vector<float>& values = film.layer(layer);
   if (film.width < 1 || film.height < 1 || values.size() != 3 * film.pixels())
     throw Error(fmt::format("{}: layer '{}' has {} values, which is no film of {} x {}", path, layer, values.size(),
@@ -27,10 +26,8 @@ void write_png(const std::string& path, const Film& film, const std::string& lay
   for (std::size_t i = 0; i < values.size(); i += 3) {
     // Magenta is seen at once, and no fog has it.
     const bool broken = std::isnan(values[i]) || std::isnan(values[i + 1]) || std::isnan(values[i + 2]);
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double value = broken ? double(c != 1) : std::clamp(values[i + c] * factor, 0.0, 1.0);
-      bytes[i + c] = png_byte(std::lround(255 * srgb(value)));
-    }
+    const Rgb shown = broken ? Rgb(1, 0, 1) : toned(tone, factor * Rgb(values[i], values[i + 1], values[i + 2]));
+    for (std::size_t c = 0; c < 3; ++c) bytes[i + c] = png_byte(std::lround(255 * srgb(shown[long(c)])));
   }
 
   png_image image{};

@@ -33,6 +33,8 @@ VelocityGrid read_velocity_vdb(const std::string& path, const std::string& name,
   return openvdb().read_velocity(path, name, max_voxels);
 }
 
+std::vector<VdbEntry> list_vdb(const std::string& path) { return openvdb().list(path); }
+
 void write_vdb(const std::string& path, const VoxelGrid& grid, const std::string& name) {
   openvdb().write(path, grid, name);
 }

@@ -3,6 +3,7 @@
 
 #include "scene/base/atomic_file.h"
 #include "scene/base/error.h"
+#include "scene/base/read_file.h"
 #include "scene/flow/flow.h"
 #include "scene/media/vdb_module.h"
 #include "scene/media/vdb_parts.h"
@@ -138,8 +139,14 @@ void write_frame(const std::string& path, Frame frame, const std::map<std::strin
   write_file_atomically(path, bytes_of(grids, metadata));
 }
 
+std::vector<VdbEntry> list(const std::string& path) {
+  const std::string file = read_whole_file(path, std::size_t(1) << 29);
+  return telling(path, [&] { return vdb_grids(file); });
+}
+
 }  // namespace airlight::scene::vdb
 
 extern "C" const airlight::scene::vdb::Module airlight_vdb = {
-    airlight::scene::vdb::read, airlight::scene::vdb::read_temperature, airlight::scene::vdb::read_velocity,
-    airlight::scene::vdb::write, airlight::scene::vdb::write_frame};
+    airlight::scene::vdb::read,          airlight::scene::vdb::read_temperature,
+    airlight::scene::vdb::read_velocity, airlight::scene::vdb::list,
+    airlight::scene::vdb::write,         airlight::scene::vdb::write_frame};

@@ -30,4 +30,7 @@ bool is_of_type(const VdbEntry&, std::string_view type);
 // mask of active voxels must agree.
 void check_grid(std::string_view file, const VdbEntry&);
 
+// The grids of the file at this path, by the library of OpenVDB (vdb_module.h). Throws Error.
+std::vector<VdbEntry> list_vdb(const std::string& path);
+
 }  // namespace airlight::scene

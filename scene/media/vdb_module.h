@@ -7,6 +7,7 @@
 
 #include "scene/flow/flow.h"
 #include "scene/media/start_grids.h"
+#include "scene/media/vdb_layout.h"
 
 namespace airlight::scene::vdb {
 
@@ -14,6 +15,7 @@ struct Module {
   VoxelGrid (*read)(const std::string& path, const std::string& name, std::size_t max_voxels);
   VoxelGrid (*read_temperature)(const std::string& path, const std::string& name, std::size_t max_voxels);
   VelocityGrid (*read_velocity)(const std::string& path, const std::string& name, std::size_t max_voxels);
+  std::vector<VdbEntry> (*list)(const std::string& path);
   void (*write)(const std::string& path, const VoxelGrid&, const std::string& name);
   void (*write_frame)(const std::string& path, Frame, const std::map<std::string, std::string>& notes);
 };

@@ -8,9 +8,12 @@
 
 #include "scene/media/voxel_grid.h"
 
-// The library has them: it instantiates grids of these trees. Without these lines both files compile each function of a tree again.
+// OpenVDB's library instantiates these trees. Without these lines both files compile each function of a tree again. Clang calls inline
+// members, such as cbeginValueAll() const, that a library built by GCC does not export.
+#ifndef __clang__
 extern template class openvdb::tree::Tree<openvdb::FloatTree::RootNodeType>;
 extern template class openvdb::tree::Tree<openvdb::Vec3STree::RootNodeType>;
+#endif
 
 namespace airlight::scene::vdb {
 

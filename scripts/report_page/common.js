@@ -42,7 +42,9 @@
 
   const describe = (row, method) => `${method}${row.c ? " (medium converted)" : ""}\n${row.set ? row.set + "\n" : ""}` +
     `${data.metrics[state.metric]} ${shown(row.v[state.metric], state.metric)}` +
-    ` [${digits(row.v[state.metric][1])}, ${digits(row.v[state.metric][2])}]\n${time(row.t[state.moves])}\n${row.all}`;
+    ` [${digits(row.v[state.metric][1])}, ${digits(row.v[state.metric][2])}]\n` +
+    `${time(row.t[state.moves])}${row.anew.includes(state.moves) ? ", all prepared again" : ""}\n` +
+    `${row.lacks ? `leaves out ${row.lacks}\n` : ""}${row.all}`;
 
   const cell = (rows, method, fronts) => {
     const drawn = rows.filter(error);
@@ -194,6 +196,50 @@
     }));
   };
 
+  const near = 1.25;  // by which times, or errors, may differ that count as equal
+  // For each method of the papers the row of what engines do, or of the marcher, that takes as long, and one that errs as much.
+  const pairsOf = (set, s, pictures) => {
+    const shownRows = set.rows.filter(r => r.s === s && error(r) && r.t[state.moves] > 0 && pictures.some(p => p.label === r.label));
+    const isPaper = r => Object.keys(colours).some(name => set.methods[r.m].startsWith(name));
+    const baselines = shownRows.filter(r => !isPaper(r)), all = [];
+    const kinds = [["equal time", r => r.t[state.moves]], ["equal error", r => Math.max(error(r)[0], 1e-9)]];
+    for (const row of shownRows.filter(isPaper))
+      for (const [words, value] of kinds) {
+        const apart = other => Math.abs(Math.log(value(other) / value(row)));
+        const other = baselines.filter(b => apart(b) <= Math.log(near)).sort((a, b) => apart(a) - apart(b))[0];
+        if (other) all.push({ words, row, other });
+      }
+    return all;
+  };
+
+  const sideBySide = (set, s) => {
+    const pictures = picturesOf(set, set.scenes[s]), host = element("div");
+    const all = pairsOf(set, s, pictures);
+    if (!all.length)
+      return element("p", { className: "about" }, pictures.length ? "No two rows take as long or err as much." :
+        "The pictures are not here: run the experiment.");
+    const named = r => `${r.label} (${time(r.t[state.moves])}, ${percent(error(r)[0])})`;
+    const select = element("select", {
+      onchange: () => {
+        const { row, other } = all[select.value];
+        const [a, b] = [row, other].map(r => pictures.find(p => p.label === r.label));
+        host.replaceChildren();
+        makeComparer(host, { pictures: [pictures[0], a, b], pair: [1, 2] });
+      }
+    }, ...all.map((pair, i) => element("option", { value: i }, `${pair.words}: ${named(pair.row)} | ${named(pair.other)}`)));
+    select.onchange();
+    return element("div", {}, element("label", {}, "pair ", select), host);
+  };
+
+  const pairs = set => element("div", {}, element("h3", {}, "Side by side at equal time, at equal error"),
+    element("p", { className: "about" }, "A method of a paper beside what engines do or the ray marcher, where times or errors differ by " +
+      `less than ${Math.round(100 * (near - 1))} %. The first picture of each list is the reference.`),
+    ...set.scenes.map((scene, s) => {
+      const details = element("details", {}, element("summary", {}, scene));
+      details.addEventListener("toggle", () => details.append(sideBySide(set, s)), { once: true });
+      return details;
+    }));
+
   const worst = set => element("div", {}, element("h3", {}, "Where each method is worst"),
     element("p", { className: "about" }, `The tile of ${side} x ${side} pixels with the greatest error in each picture below: ` +
       "the reference, the method, and the relative L2 error of the tile."),
@@ -216,7 +262,7 @@
       element("p", { className: "about" }, `Films of ${set.film} pixels; ${set.machine}; ${set.commit}. Bold: on the front, no row of ` +
         "the scene is faster and closer by relative L2. (time): its fastest row takes longer. \u00b0: the medium was converted first. <: " +
         "the reference's noise hides the error. Hold the pointer over a cell or a mark for settings and reasons."),
-      table(set), legend(set), element("div", { className: "plots" }, ...set.scenes.map((_, s) => plot(set, s))), worst(set));
+      table(set), legend(set), element("div", { className: "plots" }, ...set.scenes.map((_, s) => plot(set, s))), pairs(set), worst(set));
   };
 
   const asked = location.hash.match(/^#common\?(.*)$/);

@@ -36,11 +36,14 @@ class Row:
     def __init__(self, line):
         number = lambda name: float(line[name]) if line.get(name) else None
         self.scene, self.note, self.row = line["scene"], line["note"], line["method"]
+        self.label = " ".join(word for word in (line["method"], line["setting"]) if word)  # as the pictures are called
         self.converted = line["method"].endswith(CONVERTED)
         # "method: variant" is a setting of the method, too.
         self.method, _, variant = line["method"].removesuffix(CONVERTED).partition(": ")
         self.setting = " ".join(word for word in (variant, line["setting"]) if word)
         self.settings = line["settings"]
+        self.left_out = line.get("left_out", "")
+        self.anew = []  # what may move so that the next frame prepares everything again
         self.measures = {name: Measure(line, name) for name in METRICS if line.get(name)}
         self.error = self.measures.get("rel_l2")
         self.times = {key: number(key) for key in MOVES if key != "nothing"}
@@ -75,7 +78,18 @@ def read(results, name):
     """The rows, and the record of the run that made them."""
     rows = read_rows(results, name)
     with open(path_of(results, name, "run.json"), encoding="utf-8") as file:
-        return rows, json.load(file)
+        run = json.load(file)
+    for row, record in zip(rows, run["rows"], strict=True):
+        row.anew = [f"{what}_seconds" for what, after in record.get("moved", {}).items() if after["anew"]]
+    return rows, run
+
+
+def device_of(run):
+    """What computed it, by its name: a software renderer is a processor."""
+    device = next((row["device"] for row in run["rows"] if row["device"]), "")
+    if "llvmpipe" in device:
+        return "llvmpipe, a software renderer on the CPU"
+    return device.split(" (")[0]
 
 
 def unique(values):
@@ -107,23 +121,27 @@ def fragment(results):
     """The tables for a browser: what common.js shows, as JSON in a section of a page. Empty where the experiment has not run."""
     sets, timed = [], {}
     for name, words in (("all_orders", "all orders of scattering"), ("one_order", "light scattered once"),
-                        ("all_orders.paper", "all orders, profile paper"), ("one_order.paper", "once, profile paper")):
+                        ("device.paper", "all orders, on the device"), ("all_orders.paper", "all orders, profile paper"),
+                        ("one_order.paper", "once, profile paper")):
         try:
             rows, run = read(results, name)
         except Fault:
             continue
-        for row in rows:  # those of one order are timed as renders alone; the frames are the same
-            row.times.update({moves: t for moves, t in timed.get(row.key(), {}).items() if row.times[moves] is None})
-            timed[row.key()] = row.times
+        if not device_of(run):
+            for row in rows:  # those of one order are timed as renders alone; the frames are the same
+                row.times.update({moves: t for moves, t in timed.get(row.key(), {}).items() if row.times[moves] is None})
+                timed[row.key()] = row.times
         scenes, methods = unique(r.scene for r in rows), unique(r.method for r in rows)
         film = next(row["film"] for row in run["rows"])
         sets.append({
             "name": name, "words": words, "film": f"{film[0]} x {film[1]}", "scenes": scenes, "methods": methods,
-            "machine": f'{run["machine"]["cpu"]}, {run["machine"]["threads"]} threads',
+            "machine": device_of(run) or f'{run["machine"]["cpu"]}, {run["machine"]["threads"]} threads',
             "commit": f'measured at commit {run["commit"]}',
-            "rows": [{"s": scenes.index(r.scene), "m": methods.index(r.method), "set": r.setting, "all": r.settings, "c": r.converted,
+            "rows": [{"s": scenes.index(r.scene), "m": methods.index(r.method), "set": r.setting, "label": r.label,
+                      "all": r.settings, "c": r.converted,
                       "v": {k: [m.value, m.low, m.high] for k, m in r.measures.items()},
-                      "t": {k: t for k, t in r.times.items() if t is not None}, "note": r.note} for r in rows]})
+                      "t": {k: t for k, t in r.times.items() if t is not None}, "anew": r.anew, "lacks": r.left_out,
+                      "note": r.note} for r in rows]})
     if not sets:
         return ""
     data = json.dumps({"sets": sets, "metrics": METRICS, "moves": MOVES, "budgets": BUDGETS, "useless": USELESS}).replace("</", "<\\/")

@@ -61,7 +61,8 @@ function makeComparer(host, group) {
   };
   const controls = document.createElement("div");
   controls.className = "controls";
-  const a = select(Math.min(1, pictures.length - 1), "picture A"), b = select(0, "picture B");
+  const [first, second] = group.pair || [Math.min(1, pictures.length - 1), 0];
+  const a = select(first, "picture A"), b = select(second, "picture B");
   const modes = document.createElement("span");
   modes.className = "modes";
   for (const mode of ["wipe", "flip", "difference"]) {

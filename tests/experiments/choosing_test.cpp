@@ -7,6 +7,7 @@
 #include "experiments/choosing/ranking.h"
 #include "experiments/choosing/variations.h"
 #include "experiments/choosing/verdict.h"
+#include "experiments/driver/left_out.h"
 #include "experiments/driver/run.h"
 #include "tests/experiments/small_project.h"
 #include "tests/texts.h"
@@ -110,13 +111,20 @@ TEST_CASE("choosing: candidates are the rows of an experiment, each once", "[cho
 }
 
 TEST_CASE("choosing: what is left out", "[choosing]") {
-  const scene::Renderer& marcher = find_renderer("ray_marcher", "");
-  CHECK(left_out(marcher, {{"scattering", true, "light scattered once"}}) == "orders of scattering above one");
-  CHECK(left_out(marcher, {{"multiple scattering", true, "4 bands"}}).empty());
-  CHECK(left_out(marcher, {{"multiple scattering", false, "not asked for"},
-                           {"light_maps", false, "self_shadow = none: media do not dim light"}}) ==
+  CHECK(left_out({{"scattering", true, "light scattered once"}}) == "orders of scattering above one");
+  CHECK(left_out({{"multiple scattering", true, "4 bands"}}).empty());
+  CHECK(left_out({{"multiple scattering", false, "not asked for"},
+                  {"light_maps", false, "self_shadow = none: media do not dim light"}}) ==
         "orders of scattering above one, the shadow of media on themselves");
-  CHECK(left_out(find_renderer("path_tracer", ""), {}).empty());
+  const SmallProject project(test::box_of_fog(8, 8), "");
+  const auto fog =
+      std::make_shared<const scene::Scene>(scene::load_scene(project.path() / "experiments/scenes/one.toml"));
+  const scene::Renderer& tracer = find_renderer("path_tracer", "");
+  const auto stages = [&](const Pairs& settings) {
+    return tracer.prepare(fog, scene::Settings(tracer.settings(), settings, ""), {})->stages();
+  };
+  CHECK(left_out(stages({})).empty());
+  CHECK(left_out(stages({{"max_events", "1"}})) == "orders of scattering above one");
 }
 
 TEST_CASE("choosing: ranked by error within a time, by time within an error", "[choosing]") {

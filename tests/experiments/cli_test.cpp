@@ -232,7 +232,7 @@ TEST_CASE("a picture whose samples cannot be kept is written all the same", "[cl
 
 TEST_CASE("explain and doctor", "[cli]") {
   const TemporaryFolder folder;
-  const Result explained = run("explain " + scenes + "constant_homogeneous.toml", folder);
+  const Result explained = run("explain " + scenes + "constant_homogeneous.toml --verbose", folder);
   CHECK(explained.code == 0);
   CHECK_THAT(explained.out, Contains("computes") && Contains("leaves out") && Contains("cannot render this scene") &&
                                 Contains("path_tracer") && Contains("ray_marcher") && Contains("fogshop"));

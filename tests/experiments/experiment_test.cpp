@@ -182,6 +182,25 @@ TEST_CASE("mistakes in an experiment file are one line with position and nearest
   CHECK_THAT(failure(replaced(good, "[reference]\nrenderer = \"deterministic\"", "")), Contains("no [reference]"));
 }
 
+TEST_CASE("a claim of a paper needs a verdict from the list and what makes it true", "[experiment]") {
+  const std::string claim =
+      good + "[[claim]]\nwhere = \"Figure 4\"\nclaim = \"matches\"\npublished = \"{one|marcher; %}\"\n";
+  const std::string holds = "holds = \"[one|marcher] > 0.1\"\n";
+  CHECK_THAT(failure(claim + holds + "verdict = \"not reproduced\"\n"), Contains("no failure"));
+  CHECK_THAT(failure(claim + holds + "verdict = \"holds only where it is thin: why\"\n"), Contains("no failure"));
+  CHECK_THAT(failure(claim + "verdict = \"not comparable: no number\"\n"), Contains("no failure"));
+  CHECK_THAT(failure(claim + "verdict = \"reproduced\"\n"), Contains("e.toml:26:1") && Contains("holds is missing"));
+  CHECK_THAT(failure(claim + holds + "verdict = \"true\"\n"),
+             Contains("e.toml:31:11") && Contains("expected reproduced, not reproduced"));
+  CHECK_THAT(failure(claim + holds), Contains("e.toml:26:1") && Contains("verdict"));
+  CHECK_THAT(failure(claim + "figure = 4\n"), Contains("e.toml:30:1") && Contains("figure"));
+  CHECK_THAT(failure(claim + holds + "verdict = \"reproduced\"\ngroup = \"h\"\n"),
+             Contains("e.toml:32:9") && Contains("a folder of experiments/"));
+  const std::string erratum = good + "[[erratum]]\nwhere = \"Eq. 1\"\nprinted = \"1\"\nright = \"2\"\n";
+  CHECK_THAT(failure(erratum + "proof = \"{one|marcher}\"\n"), Contains("no failure"));
+  CHECK_THAT(failure(erratum), Contains("e.toml:26:1") && Contains("proof"));
+}
+
 TEST_CASE("bounds by row come before the gates of the file, and belong to one", "[experiment]") {
   const TemporaryFolder folder;
   folder.write("experiments/g/e.toml", good);

@@ -191,6 +191,8 @@ MUTANTS = [
     bug("a bound twice as far", TIGHTEN, "SLACK = 1.1 ", "SLACK = 2.2 ", "Tighten.test_how_far_a_bound_may_be"),
     bug("shares of the greatest", FIGURES, "Selection([sum(s.values)])", "Selection([max(s.values)])", "Figures.test_functions"),
     bug("above and equal", FIGURES, "float(v > bound)", "float(v >= bound)", "Figures.test_functions"),
+    bug("verdicts are true whatever the tables say", FIGURES, "if not entry.holds():", "if entry.holds() is None:",
+        "Claims.test_a_verdict_that_is_no_longer_true"),
     bug("noise hides nothing", FIGURES, '"_low"]) <= 0', '"_low"]) < 0', "Figures.test_puts_the_figures_in"),
     bug("stale pictures go unseen", GALLERY, "if not absent and (b", "if absent and (b", "Gallery.test_renders_what_has_changed"),
     # The steps of a first-time user.

@@ -24,13 +24,13 @@ PAGE = """# A page
 
 | what | ours |
 |---|---|
-| error | from 0 with 8, below 0 with
+| error | from 0 with 8, below 0 and 0 with
 16, or 0; |
 
 It takes 0 ms, .1 times, and S wins.
 """
 FIGURES = """[g/e rel_l2]
-from {range([*|S|8])} with 8, below {below([two|S|16])} with 16, or {one, large|S|16;8}
+from {range([*|S|8])} with 8, below {below([two|S|16])} and {below(percent([two|S|16]))} with 16, or {one, large|S|16;8}
 takes {[two|S|8|seconds] * 1000; 1} ms, {[g/e: one, large|S|8|seconds] / [two|S|16|seconds]; 3} times
 S wins ?? [one, large|S|16] < [one, large|S|8]
 """
@@ -101,10 +101,10 @@ class Figures(Tree):
 
     def test_puts_the_figures_in(self):
         page = self.read("methods/PAGE.md")
-        self.assertIn("from 0.012 to 0.50 with 8, below < 0.040 with\n16, or 3.1e-4, 0.012; |", page)
+        self.assertIn("from 0.012 to 0.50 with 8, below < 0.040 and < 4.0 with\n16, or 3.1e-4, 0.012; |", page)
         self.assertIn("takes 3 ms, .333 times", page)
         code, text = self.run_script("figures", "--check")
-        self.assertEqual((code, text), (0, "5 figures in 1 pages: 0 differ from the tables, 0 lines cannot be read\n"))
+        self.assertEqual((code, text), (0, "6 figures in 1 pages: 0 differ from the tables, 0 lines cannot be read\n"))
 
     def test_functions(self):
         rows = [f"s,,m,{i},{x},{y}" for i, (x, y) in enumerate(((4, 0.5), (1, -0.25), (2, 0.125), (9, -1.0)))]
@@ -163,6 +163,88 @@ class Figures(Tree):
         self.assertEqual(self.run_script("figures", "--check")[0], 0)
         self.write("methods/PAGE.md", page + "- one, 12 % on paper. Ours: some\n  or 13 %.\n")
         self.objects("methods/PAGE.md:10: no line of methods/PAGE.figures covers 'or 13 %.'")
+
+
+CLAIMS = """metrics = ["rel_l2"]
+[[claim]]
+where = "Figure 10"
+claim = "accurate"
+published = "{two|S|8; %} off"
+improved = "{one, large|S|16; %} off in {one, large|S|16|seconds; ms}"
+verdict = "holds only where it is large"
+holds = "[two|S|8] > 0.4 and [one, large|S|8] < 0.1"
+[[claim]]
+where = "Figure 9"
+claim = "fast"
+verdict = "not comparable: other hardware"
+[[erratum]]
+where = "Eq. 1"
+printed = "a"
+right = "b"
+proof = "{[one, large|S|8] / [one, large|S|16]; 3} times"
+"""
+CLAIMED = """# Claims
+<!-- verdicts -->
+<!-- end -->
+<!-- claims: g -->
+<!-- end -->
+<!-- failing claims -->
+<!-- end -->
+<!-- errata -->
+<!-- end -->
+"""
+
+
+@unittest.skipIf(sys.version_info < (3, 11), "no tomllib")
+class Claims(Tree):
+    def setUp(self):
+        super().setUp()
+        self.write("results/g/e/table.csv", TABLE)
+        self.write("results/gallery/g_fig9.png", "")
+        self.write("experiments/g/e.toml", CLAIMS)
+        self.write("results/README.md", CLAIMED)
+        self.assertEqual(self.run_script("figures")[0], 0)
+
+    def objects(self, *words):
+        code, text = self.run_script("figures", "--check")
+        self.assertEqual(code, 1, text)
+        for word in words:
+            self.assertIn(word, text)
+
+    def test_writes_the_tables(self):
+        page = self.read("results/README.md")
+        figure_9 = "| Figure 9 | fast | - | - | not comparable: other hardware | [e](g/e), [picture](gallery/g_fig9.png) |\n"
+        figure_10 = "| Figure 10 | accurate | 50 % off | 0.031 % off in 4.0 ms | holds only where it is large | [e](g/e) |\n"
+        self.assertIn(figure_9 + figure_10, page)
+        self.assertIn("| G | 0 | 0 | 1 | 0 | 1 |\n", page)
+        self.assertIn("| G | Figure 10 | accurate | 50 % off | holds only where it is large | [e](g/e) |\n", page)
+        self.assertIn("| G | Eq. 1 | a | b | 39.9 times | [e](g/e) |\n", page)
+        self.assertEqual(self.run_script("figures", "--check")[0], 0)
+        self.assertEqual(self.run_script("figures")[0], 0)
+        self.assertEqual(self.read("results/README.md"), page)
+
+    def test_a_changed_table_and_a_changed_page(self):
+        self.write("results/g/e/table.csv", TABLE.replace("two,,S,8,0.5,", "two,,S,8,0.6,"))
+        self.objects("results/README.md:11: found | Figure 10 | accurate | 50 % off", "expected | Figure 10 | accurate | 60 % off")
+        self.write("results/g/e/table.csv", TABLE)
+        self.write("results/README.md", self.read("results/README.md").replace("| fast | - |", "| fast | 1 |"))
+        self.objects("results/README.md:10: found | Figure 9 | fast | 1 |")
+
+    def test_a_verdict_that_is_no_longer_true(self):
+        self.write("results/g/e/table.csv", TABLE.replace("two,,S,8,0.5,", "two,,S,8,0.3,"))
+        self.objects("experiments/g/e.toml: claim 1: 'holds only where it is large' does not hold")
+
+    def test_a_row_without_figures_keeps_what_it_says(self):
+        page = self.read("results/README.md")
+        self.write("results/g/e/table.csv", TABLE.replace("two,,S,8,0.5,0.5,0.5,0.003,", "two,,S,8,,,,,no such device"))
+        code, text = self.run_script("figures", "--check")
+        self.assertEqual(code, 0, text)
+        self.assertIn("claim 1: results/g/e/table.csv has no row two|S|8 with a number in rel_l2: the page is left as it is", text)
+        self.assertEqual(self.read("results/README.md"), page)
+
+    def test_a_row_that_is_gone(self):
+        self.write("experiments/g/e.toml", CLAIMS.replace("{two|S|8; %}", "{three|S; %}"))
+        self.objects("experiments/g/e.toml: claim 1: results/g/e/table.csv has no row three|S")
 
 
 @unittest.skipIf(sys.version_info < (3, 11), "no tomllib")
