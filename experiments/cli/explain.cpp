@@ -6,6 +6,7 @@
 #include "experiments/cli/command_line.h"
 #include "experiments/cli/commands.h"
 #include "experiments/cli/scene_option.h"
+#include "gpu/context.h"
 #include "scene/base/error.h"
 #include "scene/scene.h"
 
@@ -79,6 +80,7 @@ void list(const Components& components, const Input& input, const std::string& w
   for (const auto& c : components) {
     Reasons reasons;
     try {
+      if (!c->device().empty()) gpu::Context::get();  // throws where there is none
       reasons = c->supports(input, scene::Settings(c->settings(), {}, c->name()));
     } catch (const Unavailable& reason) {
       reasons.push_back(fmt::format("not available on this machine: {}", reason.what()));

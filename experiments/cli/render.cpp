@@ -86,11 +86,12 @@ int render(const RenderOptions& options) {
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (options.distance) add_distance(*scene, film);
   write(options, renderer, *scene, settings, seconds, film);
-  fmt::print("{}{}{}: {}, {} x {} pixels, {:.3g} s\n", options.out, options.png.empty() ? "" : ", ", options.png,
-             renderer.name(), film.width, film.height, seconds);
   if (not_kept) say(fmt::format("warning: {}; {} is written, its samples are not kept", not_kept->what(), options.out));
   check_interrupted();
-  return not_kept ? not_kept->exit_code() : 0;
+  if (not_kept) return not_kept->exit_code();
+  const std::string files = options.out + (options.png.empty() ? "" : ", " + options.png);
+  say(fmt::format("{}: {}, {} x {} pixels, {:.3g} s", files, renderer.name(), film.width, film.height, seconds));
+  return 0;
 }
 
 }  // namespace

@@ -114,6 +114,8 @@
     }
     const axis = `time of a frame when ${data.moves[state.moves]}`;
     picture.append(svg("text", { x: (left + w - right) / 2, y: h - 8, "text-anchor": "middle" }, axis));
+    const middle = (top + h - bottom) / 2;
+    picture.append(svg("text", { x: 12, y: middle, "text-anchor": "middle", transform: `rotate(-90 12 ${middle})` }, "relative L2 error"));
     const front = frontOf(rows).sort((a, b) => a.t[state.moves] - b.t[state.moves]);
     let line = "", last;
     for (const r of front) {

@@ -50,7 +50,7 @@ def row_html(anchor, group, labels, title, name, chips, find, content, flags="",
     """A folded row. Its contents are packed, and page.js unpacks them when the reader opens the row."""
     packed = base64.b64encode(zlib.compress(json.dumps(content, separators=(",", ":")).encode())).decode()
     return (f'<details class="entry {flags}" data-group="{html.escape(group)}" data-find="{html.escape(find.lower())}">'
-            f'<summary id="{anchor}"><b>{html.escape("; ".join(labels))}</b>'
+            f'<summary id="{anchor}"><b>{html.escape("; ".join(labels[:2]) + (" and more" if len(labels) > 2 else ""))}</b>'
             f'<span>{html.escape(title)} <code>{html.escape(name)}</code></span><span class=chips>{"".join(chips)}</span></summary>'
             f'<script type="text/plain" class=packed>{packed}</script>{pictures}</details>')
 
@@ -131,7 +131,8 @@ def headline_html(results):
         files += [("image/svg+xml", os.path.join(folder, plot["file"]), "error against time") for plot in run.get("plots", [])[:1]]
         images = [f'<img src="{data_uri(kind, path)}" alt="{words["Paper"]}: {html.escape(text)}">'
                   for kind, path, text in files if os.path.exists(path)]
-        counts = collections.Counter(re.sub(r"(holds only where).*", r"\1 noted", e.verdict) for e in ENTRIES if e.group == group)
+        short = [re.sub(r"(holds only where).*", r"\1 noted", e.verdict.split(":")[0]) for e in ENTRIES if e.group == group]
+        counts = collections.Counter(short)
         claims = ", ".join(f"{count} {verdict}" for verdict, count in counts.most_common() if verdict)
         film, devices = sized(run)
         (_, paper), (_, subject), *judged = words.items()

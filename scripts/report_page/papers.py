@@ -51,15 +51,12 @@ class Entry:
 
 
 def entries(text):
-    """The list items and table rows below each heading of results/README.md."""
+    """The table rows below each heading of results/README.md."""
     found, chapter, head = [], "", []
     for block in re.split(r"\n(?=#|- |\||\n)", text):
         line = " ".join(block.split())
         if line.startswith("## "):
             chapter, head = line[3:], []
-        elif line.startswith("- ") and chapter:
-            label, _, rest = line[2:].partition(": ")
-            found.append(Entry(chapter, label, rest))
         elif line.startswith("|") and chapter:
             row = cells(line)
             if not head:

@@ -438,7 +438,10 @@ class Gallery(Tree):
     def test_what_is_missing(self):
         self.assertEqual(self.run_script("gallery")[0], 0)
         self.write("results/README.md", "")
-        self.objects(1, "results/README.md: no link to results/gallery/one.png", "--check")
+        self.objects(1, "neither README.md nor results/README.md links to results/gallery/one.png", "--check")
+        self.write("results/gallery/README.md", "")
+        self.objects(1, "results/gallery/README.md is not what experiments/gallery.toml says", "--check")
+        self.assertEqual(self.run_script("gallery", "--page")[0], 0)
         self.write("results/gallery/two.png", "")
         self.objects(1, "results/gallery/two.png: no entry of experiments/gallery.toml draws it", "--check")
         os.remove(f"{self.root}/results/gallery/one.png")
