@@ -14,8 +14,9 @@ namespace airlight::experiments::cli {
 namespace {
 
 struct ExplainOptions {
-  std::string scene, method, convert;
-  Pairs settings, overrides;
+  SceneOptions scene;
+  std::string method;
+  Pairs settings;
   bool verbose = false;
 };
 
@@ -110,8 +111,9 @@ void explain_each(const Components& components, const std::string& method, const
 
 int explain_flow(const ExplainOptions& options) {
   if (!options.method.empty()) find_solver(options.method, "--method");
-  if (!options.convert.empty()) throw Error("--convert: a flow has no media");
-  const scene::FlowProblem flow = scene::load_flow(options.scene, options.overrides);
+  if (!options.scene.convert.empty()) throw Error("--convert: a flow has no media");
+  if (!options.scene.camera.empty()) throw Error("--camera: a flow has no camera");
+  const scene::FlowProblem flow = scene::load_flow(options.scene.file, options.scene.overrides);
   fmt::print("{}\n{}", flow.name, describe(flow));
   if (options.method.empty() && !options.verbose)
     list(all_solvers(), flow, "solve this flow");
@@ -123,9 +125,9 @@ int explain_flow(const ExplainOptions& options) {
 
 int explain(const ExplainOptions& options) {
   if (options.method.empty() && !options.settings.empty()) throw Error("--set: expected --method, whose setting it is");
-  if (is_flow_file(options.scene)) return explain_flow(options);
+  if (is_flow_file(options.scene.file)) return explain_flow(options);
   if (!options.method.empty()) find_renderer(options.method, "--method");
-  const auto scene = load(options.scene, options.overrides, options.convert, 0);
+  const auto scene = load(options.scene, 0);
   fmt::print("{}\n{}", scene->name, describe(*scene));
   if (options.method.empty() && !options.verbose)
     list(all_renderers(), *scene, "render this scene");
@@ -142,17 +144,15 @@ void add_explain(Commands& commands) {
   CLI::App* c =
       add_command(commands.app, "explain",
                   "which methods can render a scene or solve a flow, their settings, and what they leave out");
-  c->add_option("SCENE", options->scene, "scene file or flow file (required)");
+  add_scene_options(c, options->scene, "scene file or flow file (required)");
   c->add_option("--method,-m", options->method, "settings and stages of this renderer");
   c->add_flag("--verbose,-v", options->verbose, "settings and stages of all renderers");
   add_pairs(c, "--set", options->settings, "change a setting of the method");
-  add_pairs(c, "--override", options->overrides, "change a value of the scene file");
-  add_convert_option(c, options->convert);
   commands.add_limit(c);
   commands.add_data(c);
   commands.add_gpu(c);
   commands.on(c, [options] {
-    require(options->scene, "SCENE");
+    require(options->scene.file, "SCENE");
     return explain(*options);
   });
 }

@@ -21,8 +21,9 @@ namespace airlight::experiments::cli {
 namespace {
 
 struct RenderOptions {
-  std::string scene, method, out, png, samples, cache, convert;
-  Pairs settings, overrides;
+  SceneOptions scene;
+  std::string method, out, png, samples, cache;
+  Pairs settings;
   int threads = 0;
   double exposure = 0;
   std::string tone = "clamp";
@@ -46,13 +47,13 @@ void write(const RenderOptions& options, const scene::Renderer& renderer, const 
   metadata["scene_hash"] = scene.hash;
   metadata["renderer"] = renderer.name();
   metadata["settings"] = settings.canonical();
-  if (!options.convert.empty()) metadata["converted"] = options.convert;
+  if (!options.scene.convert.empty()) metadata["converted"] = options.scene.convert;
   metadata["commit"] = commit();
   metadata.try_emplace("seconds", fmt::format("{:.3f}", seconds));
   scene::write_exr(options.out, film);
   if (!options.png.empty()) scene::write_png(options.png, film, "mean", options.exposure, tone_of(options.tone));
   if (const auto warning = metadata.find("warning"); warning != metadata.end())
-    say(fmt::format("{}: warning: {}", options.scene, warning->second));
+    say(fmt::format("{}: warning: {}", options.scene.file, warning->second));
 }
 
 int render(const RenderOptions& options) {
@@ -68,7 +69,7 @@ int render(const RenderOptions& options) {
   const scene::Settings settings(renderer.settings(), given, options.method);
   require_output(options.out, ".exr");
   if (!options.png.empty()) require_output(options.png, ".png");
-  const auto scene = load(options.scene, options.overrides, options.convert, options.threads);
+  const auto scene = load(options.scene, options.threads);
 
   Progress progress(fmt::format("{} {}", options.method, scene->name));
   std::optional<scene::CannotWrite> not_kept;
@@ -99,7 +100,7 @@ int render(const RenderOptions& options) {
 void add_render(Commands& commands) {
   const auto options = std::make_shared<RenderOptions>();
   CLI::App* c = add_command(commands.app, "render", "render a scene with a method or a reference");
-  c->add_option("SCENE", options->scene, "scene file (required; its format is documented in scene/README.md)");
+  add_scene_options(c, options->scene, "scene file (required; its format is documented in scene/README.md)");
   c->add_option("--method,-m", options->method,
                 fmt::format("method or reference that renders (required): {}", fmt::join(renderer_names(), ", ")));
   c->add_option("--out,-o", options->out, "OpenEXR file to write (required)");
@@ -116,13 +117,11 @@ void add_render(Commands& commands) {
                 "folder that keeps samples, so that a stopped render continues (path_tracer only)");
   add_pairs(c, "--set", options->settings,
             "change a setting of the method (`airlight explain SCENE -m METHOD` lists them)");
-  add_pairs(c, "--override", options->overrides, "change a value of the scene file, e.g. film.width=64");
-  add_convert_option(c, options->convert);
   commands.add_limit(c);
   commands.add_data(c);
   commands.add_gpu(c);
   commands.on(c, [options] {
-    require(options->scene, "SCENE");
+    require(options->scene.file, "SCENE");
     require(options->method, "--method");
     require(options->out, "--out");
     check_exposure(options->exposure);

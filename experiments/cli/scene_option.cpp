@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <sstream>
 
 #include "experiments/application/build_info.h"
@@ -15,8 +16,6 @@
 namespace airlight::experiments::cli {
 namespace {
 
-constexpr const char* option = "--convert";
-
 scene::MediumConversion conversion_of(const std::string& text) {
   Pairs pairs;
   std::istringstream parts(text.ends_with(',') ? text + ',' : text);
@@ -24,20 +23,53 @@ scene::MediumConversion conversion_of(const std::string& text) {
     const std::size_t equals = part.find('=');
     if (equals == std::string::npos || equals == 0)
       throw Error(fmt::format("{} {}: '{}' is no pair, expected to=FORM and its size, as in to=gaussians,count=600",
-                              option, text, part));
+                              "--convert", text, part));
     pairs[part.substr(0, equals)] = part.substr(equals + 1);
   }
-  if (pairs.count("to") == 0) throw Error(fmt::format("{} {}: expected to=FORM", option, text));
-  return scene::read_conversion(pairs, option);
+  if (pairs.count("to") == 0) throw Error(fmt::format("--convert {}: expected to=FORM", text));
+  return scene::read_conversion(pairs, "--convert");
+}
+
+std::string camera_text(const Point3& position, const Point3& target) {
+  return fmt::format("{{ position = [{}, {}, {}], look_at = [{}, {}, {}] }}", position[0], position[1], position[2],
+                     target[0], target[1], target[2]);
+}
+
+// The overrides, and with --camera fit that of the camera: from the front, above and the right, at the distance from which the ball around
+// everything fills the default field of view of 0.7 rad.
+Pairs with_camera(const SceneOptions& options) {
+  Pairs overrides = options.overrides;
+  if (options.camera.empty()) return overrides;
+  if (options.camera != "fit") throw Error(fmt::format("--camera '{}': expected fit", options.camera));
+  for (const auto& [path, value] : overrides)
+    if (path == "camera" || path.starts_with("camera."))
+      throw Error(fmt::format("--camera fit: expected no --override {}", path));
+  overrides["camera"] = camera_text(Point3(0, 0, 1), Point3::Zero());  // any, until it is known what there is
+  const scene::Scene scene = scene::load_scene(options.file, overrides);
+  Box all;
+  for (const scene::Medium& medium : scene.media)
+    if (const Box box = bounding_box(medium); box.size().allFinite()) all = unite(all, box);
+  if (scene.geometry) all = unite(all, scene.geometry->bounds());
+  if (all.empty() || !(all.size().norm() > 0))
+    throw Error(fmt::format("{}: --camera fit: expected a medium or a surface that has an end", options.file));
+  const double radius = 0.5 * all.size().norm();
+  overrides["camera"] =
+      camera_text(all.center() + radius / std::sin(0.35) * Vec3(0.5, 0.35, 1).normalized(), all.center());
+  return overrides;
 }
 
 }  // namespace
 
-void add_convert_option(CLI::App* command, std::string& text) {
-  command->add_option(option, text,
+void add_scene_options(CLI::App* command, SceneOptions& options, const std::string& about_scene) {
+  command->add_option("SCENE", options.file, about_scene);
+  add_pairs(command, "--override", options.overrides, "change a value of the scene file, e.g. film.width=64");
+  command->add_option("--convert", options.convert,
                       "convert all media first: to=gaussians,count=600 | to=legendre,order=12 | to=fogmap,cells=64 | "
                       "to=grid,voxels=64 | to=homogeneous; append cut=false for Gaussians that are not cut off, "
                       "lamps=true to replace suns by far point lights");
+  command->add_option(
+      "--camera", options.camera,
+      "fit: replace the scene's camera, if any, by one that sees all media and surfaces that have an end");
 }
 
 std::string describe(const scene::Scene& scene) {
@@ -64,16 +96,16 @@ bool is_flow_file(const std::string& path) {
   return scene::load::parse_toml(scene::read_whole_file(path, scene::load::most_toml_bytes), path).contains("flow");
 }
 
-std::shared_ptr<const scene::Scene> load(const std::string& path, const Pairs& overrides, const std::string& convert,
-                                         int threads) {
-  if (convert.empty()) return std::make_shared<const scene::Scene>(scene::load_scene(path, overrides));
-  const scene::MediumConversion conversion = conversion_of(convert);
-  const scene::Scene scene = scene::load_scene(path, overrides);
+std::shared_ptr<const scene::Scene> load(const SceneOptions& options, int threads) {
+  const Pairs overrides = with_camera(options);
+  if (options.convert.empty()) return std::make_shared<const scene::Scene>(scene::load_scene(options.file, overrides));
+  const scene::MediumConversion conversion = conversion_of(options.convert);
+  const scene::Scene scene = scene::load_scene(options.file, overrides);
   scene::ConvertedScene converted = [&] {
     try {
       return convert_media(scene, conversion, quiet_execution(threads), reference_id());
     } catch (const Error& error) {
-      throw Error(fmt::format("{}: {}", path, error.what()), error.exit_code());
+      throw Error(fmt::format("{}: {}", options.file, error.what()), error.exit_code());
     }
   }();
   for (const scene::ConvertedMedium& medium : converted.media)

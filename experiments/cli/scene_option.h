@@ -9,8 +9,16 @@
 
 namespace airlight::experiments::cli {
 
-// --convert, into `text`: "to=gaussians,count=600".
-void add_convert_option(CLI::App* command, std::string& text);
+// What a command is given, and how its options change it.
+struct SceneOptions {
+  std::string file;
+  Pairs overrides;      // --override
+  std::string convert;  // --convert: "to=gaussians,count=600"; empty: media stay as they are
+  std::string camera;   // --camera: "fit", or empty for the file's own
+};
+
+// SCENE, --override, --convert and --camera.
+void add_scene_options(CLI::App* command, SceneOptions&, const std::string& about_scene);
 
 // Lights, media and surfaces, a line each.
 std::string describe(const scene::Scene&);
@@ -18,8 +26,8 @@ std::string describe(const scene::Scene&);
 std::string describe(const scene::FlowProblem&);
 bool is_flow_file(const std::string& path);
 
-// Loads the scene and, unless `convert` is empty, converts its media: a line for each says what that lost.
-std::shared_ptr<const scene::Scene> load(const std::string& path, const Pairs& overrides, const std::string& convert,
-                                         int threads);
+// Loads the scene. With `camera` = fit its camera sees all media and surfaces that have an end; with `convert` its media are converted,
+// and a line for each says what that lost.
+std::shared_ptr<const scene::Scene> load(const SceneOptions&, int threads);
 
 }  // namespace airlight::experiments::cli

@@ -231,7 +231,7 @@ void RowKeeper::finish(const Row& row, std::optional<Row>& place) {
   journal_.add(row);
   made_rows_ = true;
   place = row;
-  say(row, "done");
+  say(row, row.note.empty() ? "done" : "refused");
 }
 
 void RowKeeper::say(const Row& row, const char* how) const {

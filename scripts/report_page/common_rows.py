@@ -41,7 +41,7 @@ class Row:
         # "method: variant" is a setting of the method, too.
         self.method, _, variant = line["method"].removesuffix(CONVERTED).partition(": ")
         self.setting = " ".join(word for word in (variant, line["setting"]) if word)
-        self.settings = line["settings"]
+        self.settings, self.renderer = line["settings"], line["renderer"]
         self.left_out = line.get("left_out", "")
         self.anew = []  # what may move so that the next frame prepares everything again
         self.measures = {name: Measure(line, name) for name in METRICS if line.get(name)}

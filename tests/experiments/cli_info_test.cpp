@@ -57,6 +57,31 @@ TEST_CASE("explain lists who can and who cannot, for scenes and flows", "[cli]")
   CHECK_THAT(run("explain fog.toml --set steps=4", folder).err, Contains("expected --method"));
 }
 
+TEST_CASE("--camera fit sees everything that has an end", "[cli]") {
+  const TemporaryFolder folder;
+  folder.write(
+      "bare.toml",
+      "[film]\nwidth = 40\nheight = 40\n[[light]]\ntype = 'directional'\nto_light = [0, 1, 0]\nirradiance = 3\n"
+      "[[medium]]\ntype = 'homogeneous'\nsigma_t = 0.5\n"
+      "region = { type = 'box', lo = [9, 2, 3], hi = [11, 4, 5] }\n");
+  CHECK(run("render bare.toml -m ray_marcher -o a.exr", folder).code == 2);
+  REQUIRE(run("render bare.toml -m ray_marcher -o a.exr --camera fit", folder).code == 0);
+  const scene::Film film = scene::read_exr(folder.file("a.exr"));
+  CHECK(film.get("transmittance", 20, 20)[0] < 0.5);
+  int inside = 0;
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 40; ++x) {
+      const bool fog = film.get("transmittance", x, y)[0] < 1;
+      inside += fog;
+      if (x == 0 || y == 0 || x == 39 || y == 39) CHECK_FALSE(fog);
+    }
+  CHECK(inside > 40 * 40 / 4);
+  CHECK_THAT(run("render bare.toml -m ray_marcher -o a.exr --camera best", folder).err, Contains("expected fit"));
+  CHECK(run("explain bare.toml --camera fit --override camera.up='[0, 1, 0]'", folder).code == 2);
+  folder.write("endless.toml", "[[medium]]\ntype = 'homogeneous'\nsigma_t = 0.5\n");
+  CHECK_THAT(run("explain endless.toml --camera fit", folder).err, Contains("that has an end"));
+}
+
 TEST_CASE("compare draws where two pictures differ", "[cli]") {
   const TemporaryFolder folder;
   scene::Film reference(8, 4), image(8, 4);
