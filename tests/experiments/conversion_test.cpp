@@ -154,6 +154,18 @@ renderer = "ray_marcher"
   project.write("experiments/g/like.toml", top + "[like]\nexperiment = \"g/e\"\nwithout = [\"nobody\"]\n");
   CHECK_THROWS_WITH(read_experiment(project.path(), "g/like", "quick"),
                     Catch::Contains("like.toml:11:11") && Catch::Contains("g/e has no method 'nobody'"));
+  project.write("experiments/g/like.toml",
+                top + "[like]\nexperiment = \"g/e\"\nwithout = [\"as it was\"]\ndevice = true\n");
+  const Experiment on_device = read_experiment(project.path(), "g/like", "quick");
+  REQUIRE(on_device.methods.size() == 3);
+  CHECK(on_device.methods[0].renderer == "ray_marcher");  // this file's own stays on the processor
+  for (std::size_t i = 1; i < 3; ++i) CHECK(on_device.methods[i].renderer == e.methods[i].renderer + "_gpu");
+  project.write("experiments/g/traced.toml",
+                "title = \"Traced\"\nmetrics = []\n[[scene]]\nfile = \"scenes/one.toml\"\n"
+                "[[method]]\nrenderer = \"path_tracer\"\n");
+  project.write("experiments/g/like.toml", top + "[like]\nexperiment = \"g/traced\"\ndevice = true\n");
+  CHECK_THROWS_WITH(read_experiment(project.path(), "g/like", "quick"),
+                    Catch::Contains("like.toml:11:10") && Catch::Contains("no renderer 'path_tracer_gpu'"));
   project.write("experiments/g/like.toml", top + "[like]\nexperiment = \"g/none\"\n");
   CHECK_THROWS_WITH(read_experiment(project.path(), "g/like", "quick"), Catch::Contains("g/none"));
 }

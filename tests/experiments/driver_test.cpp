@@ -65,6 +65,18 @@ double metric(const Row& row, const std::string& name) { return quantity(row, na
 
 }  // namespace
 
+TEST_CASE("an experiment says what each picture lacks, where it is asked", "[driver]") {
+  const SmallProject project(box_of_fog(8, 6), "left_out = true\n" + experiment_file);
+  const Outcome outcome =
+      run_experiment(read_experiment(project.path(), "g/e", "quick"), {project.path(), false, 1, false});
+  REQUIRE(outcome.rows.size() == 3);
+  CHECK(outcome.rows[0].left_out == "orders of scattering above one");
+  CHECK(outcome.rows[2].left_out.empty());  // it was refused
+  const std::string table = read_bytes((project.path() / "results/g/e/table.csv").string());
+  CHECK_THAT(table, Catch::Contains(",left_out,note\n") && Catch::Contains(",orders of scattering above one,"));
+  CHECK_THAT(read_bytes((project.path() / "results/g/e/table.md").string()), Catch::Contains("| leaves out |"));
+}
+
 TEST_CASE("an experiment leaves its table, plots, pictures and record", "[driver]") {
   const Project project;
   const Outcome outcome = project.run(false);
