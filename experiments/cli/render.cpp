@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <optional>
@@ -90,8 +91,10 @@ int render(const RenderOptions& options) {
   if (not_kept) say(fmt::format("warning: {}; {} is written, its samples are not kept", not_kept->what(), options.out));
   check_interrupted();
   if (not_kept) return not_kept->exit_code();
-  const std::string files = options.out + (options.png.empty() ? "" : ", " + options.png);
-  say(fmt::format("{}: {}, {} x {} pixels, {:.3g} s", files, renderer.name(), film.width, film.height, seconds));
+  if (isatty(STDERR_FILENO)) {  // scripts read warnings alone
+    const std::string files = options.out + (options.png.empty() ? "" : ", " + options.png);
+    say(fmt::format("{}: {}, {} x {} pixels, {:.3g} s", files, renderer.name(), film.width, film.height, seconds));
+  }
   return 0;
 }
 
