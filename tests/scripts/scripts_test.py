@@ -85,19 +85,21 @@ class Tree(unittest.TestCase):
         return done.returncode, done.stdout + done.stderr
 
 
-class Figures(Tree):
+class FiguresTree(Tree):
+    def objects(self, *words):
+        code, text = self.run_script("figures", "--check")
+        self.assertEqual(code, 1, text)
+        for word in words:
+            self.assertIn(word, text)
+
+
+class Figures(FiguresTree):
     def setUp(self):
         super().setUp()
         self.write("results/g/e/table.csv", TABLE)
         self.write("methods/PAGE.md", PAGE)
         self.write("methods/PAGE.figures", FIGURES)
         self.assertEqual(self.run_script("figures")[0], 0)
-
-    def objects(self, *words):
-        code, text = self.run_script("figures", "--check")
-        self.assertEqual(code, 1, text)
-        for word in words:
-            self.assertIn(word, text)
 
     def test_puts_the_figures_in(self):
         page = self.read("methods/PAGE.md")
@@ -196,7 +198,7 @@ CLAIMED = """# Claims
 
 
 @unittest.skipIf(sys.version_info < (3, 11), "no tomllib")
-class Claims(Tree):
+class Claims(FiguresTree):
     def setUp(self):
         super().setUp()
         self.write("results/g/e/table.csv", TABLE)
@@ -204,12 +206,6 @@ class Claims(Tree):
         self.write("experiments/g/e.toml", CLAIMS)
         self.write("results/README.md", CLAIMED)
         self.assertEqual(self.run_script("figures")[0], 0)
-
-    def objects(self, *words):
-        code, text = self.run_script("figures", "--check")
-        self.assertEqual(code, 1, text)
-        for word in words:
-            self.assertIn(word, text)
 
     def test_writes_the_tables(self):
         page = self.read("results/README.md")
