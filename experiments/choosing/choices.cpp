@@ -62,6 +62,14 @@ struct Case {
   double waited = 0;  // share of the threads' time
 };
 
+// A frame of the small film takes longer than all times that are asked about, so that of the whole film does.
+bool is_too_slow(const Candidate& c, const std::vector<Trial>& tried, double longest) {
+  const auto trial = std::find_if(tried.begin(), tried.end(), [&](const Trial& t) { return t.candidate == &c; });
+  return trial != tried.end() && trial->done() &&
+         std::all_of(trial->screened.begin(), trial->screened.end(),
+                     [&](const FrameTime& time) { return time.at_least && time.seconds.low > longest; });
+}
+
 // All questions about a scene share its trials: one run for the longest budget, of all that moves.
 class SceneCases {
  public:
@@ -119,7 +127,8 @@ class SceneCases {
       setup.samples = samples_;
       setup.spend = 3600;
       Trials judgement(next.scene, setup, moves_, report);
-      next.judged = judgement.run(candidates_, trace_truth(next.scene, setup, setup.spend, report), longest_);
+      next.judged = judgement.run(candidates_, trace_truth(next.scene, setup, setup.spend, report), longest_,
+                                  [&](const Candidate& c) { return !is_too_slow(c, next.tried, *longest_.seconds); });
       next.waited = std::max(choice.waited(), judgement.waited());
       keep_lower_times(next.judged, next.tried);
       cases_.push_back(std::move(next));

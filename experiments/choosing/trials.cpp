@@ -274,7 +274,8 @@ std::vector<const Candidate*> in_turns(const std::vector<Candidate>& candidates)
 
 }  // namespace
 
-std::vector<Trial> Trials::run(const std::vector<Candidate>& candidates, const Truth& truth, const Goal& goal) {
+std::vector<Trial> Trials::run(const std::vector<Candidate>& candidates, const Truth& truth, const Goal& goal,
+                               const std::function<bool(const Candidate&)>& wanted) {
   const ProcessorTime before = processor_time();
   end_ = start_ + screening * setup_.spend;
   std::vector<Trial> trials;
@@ -282,6 +283,7 @@ std::vector<Trial> Trials::run(const std::vector<Candidate>& candidates, const T
     const Candidate& c = *each;
     done_ += 0.6 / double(candidates.size());
     report_(done_);
+    if (wanted && !wanted(c)) continue;
     Trial trial;
     trial.candidate = &c;
     bool needed = true;

@@ -50,8 +50,9 @@ class Trials {
   // Throws Error where something of `moves` has nothing in the scene that could move so.
   Trials(std::shared_ptr<const scene::Scene>, TrialSetup, std::vector<Moves>, Report);
 
-  // All candidates, each renderer's first row first. Throws scene::Interrupted on a signal; where the time to spend is over, the trial says so.
-  std::vector<Trial> run(const std::vector<Candidate>&, const Truth&, const Goal&);
+  // Those of the candidates that are wanted (default: all), each renderer's first row first. Throws scene::Interrupted on a signal; where the time to spend is over, the trial says so.
+  std::vector<Trial> run(const std::vector<Candidate>&, const Truth&, const Goal&,
+                         const std::function<bool(const Candidate&)>& wanted = {});
   // Share of the threads' time in run() in which no processor was free for them: other programs made times longer.
   double waited() const { return waited_; }
 
