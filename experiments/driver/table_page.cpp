@@ -25,15 +25,14 @@ std::string markdown(const TextTable& lines) {
 
 // One sentence below the heading of a table whose numbers need it.
 std::string explanation(const std::string& file) {
-  if (file == "stages.csv")
-    return "Median time of each stage of one render. A blank: the row does not have this stage.\n\n";
+  if (file == "stages.csv") return "Median time of each stage. A blank: the row does not have this stage.\n\n";
   if (file == "orders.csv") return "Order with which the error falls from each setting to the next.\n\n";
   return "";
 }
 
-// A conclusion or verdict is checked on one table, often that of profile quick: another table says so.
-std::string checked_on(const Experiment& e, const std::string& table) {
-  return table == results_name(e.id, e.profile) ? "" : fmt::format(" (checked on the table `{}`)", table);
+// A conclusion or verdict is checked on one table, often that of profile quick: the page of another table names it.
+std::string checked_on(const Experiment& e, const std::string& table, const char* before, const char* after) {
+  return table == results_name(e.id, e.profile) ? "" : fmt::format("{} the table `{}`{}", before, table, after);
 }
 
 std::vector<GateResult> gates_of(const json& record) {
@@ -46,9 +45,10 @@ std::vector<GateResult> gates_of(const json& record) {
 // The summary, the conclusion, and the verdicts on claims of the paper.
 std::string conclusion(const Experiment& e, const json& record) {
   std::string out = record.contains("summary") ? record.at("summary").get<std::string>() + "\n\n" : "";
-  if (e.conclusion) out += fmt::format("{}{}\n\n", e.conclusion->text, checked_on(e, e.conclusion->table));
+  if (e.conclusion) out += e.conclusion->text + checked_on(e, e.conclusion->table, " Checked on", ".") + "\n\n";
   for (const ClaimCase& c : e.claims)
-    out += fmt::format("- Claim ({}): {}. Verdict{}: **{}**.\n", c.where, c.claim, checked_on(e, c.table), c.verdict);
+    out += fmt::format("- Claim ({}): {}. Verdict{}: **{}**.\n", c.where, c.claim,
+                       checked_on(e, c.table, " (checked on", ")"), c.verdict);
   return e.claims.empty() ? out : out + "\n";
 }
 

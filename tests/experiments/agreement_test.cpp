@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "experiments/application/json_value.h"
 #include "experiments/application/probes.h"
 #include "experiments/driver/kind.h"
 #include "experiments/driver/tables.h"
