@@ -56,8 +56,10 @@ std::string conclusion(const Experiment& e, const json& record) {
 std::string count_text(const std::vector<GateResult>& gates) {
   if (gates.empty()) return "";
   const GateCounts counts = count(gates);
-  return fmt::format("{} of {} gates hold{}. A [gate](#gates) is a bound on a figure of a row.\n\n", counts.passed,
-                     gates.size(), counts.skipped ? fmt::format(", {} skipped", counts.skipped) : "");
+  const std::string failed = counts.failed ? fmt::format(", {} failed", counts.failed) : "",
+                    skipped = counts.skipped ? fmt::format(", {} skipped", counts.skipped) : "";
+  return fmt::format("{} of {} gates hold{}{}. A [gate](#gates) is a bound on a figure of a row.\n\n", counts.passed,
+                     gates.size(), failed, skipped);
 }
 
 std::string conditions(const Experiment& e, const json& record) {
