@@ -64,8 +64,8 @@ Placement placement_of(const Operation& op) {
 // The script while it runs.
 class Run {
  public:
-  Run(const std::string& path, const std::function<void()>& check)
-      : folder_(std::filesystem::path(path).parent_path()), check_(check) {}
+  Run(const std::string& path, const std::function<void()>& check, double later)
+      : folder_(std::filesystem::path(path).parent_path()), check_(check), later_(later) {}
 
   void line(Operation op, int number) {
     const std::string name = op.name(
@@ -204,7 +204,8 @@ class Run {
     emitter.tag = op.text("tag", "");
     emitter.seed = seed_of(op);
     Ids ids;
-    for (Gaussian& gaussian : particles(emitter, op.number("time", any_number))) ids.push_back(out_.list.add(gaussian));
+    const double time = op.number("time", any_number) + later_;
+    for (Gaussian& gaussian : particles(emitter, time)) ids.push_back(out_.list.add(gaussian));
     return ids;
   }
 
@@ -253,6 +254,7 @@ class Run {
 
   std::filesystem::path folder_;
   const std::function<void()>& check_;
+  double later_;
   Authored out_;
   Ids selection_;
   int number_of_operations_ = 0;
@@ -260,8 +262,8 @@ class Run {
 
 }  // namespace
 
-Authored run_script(const std::string& path, const std::function<void()>& check) {
-  Run run(path, check);
+Authored run_script(const std::string& path, const std::function<void()>& check, double later) {
+  Run run(path, check, later);
   for_each_operation(path, check, [&](Operation op, int line) {
     run.line(std::move(op), line);
     return true;

@@ -27,8 +27,8 @@ struct Authored {
   std::vector<Done> done;
 };
 
-// Runs the script. `check` is called often and may throw to stop. Throws Error: "SCRIPT:LINE: what was found, what was
-// expected".
-Authored run_script(const std::string& path, const std::function<void()>& check);
+// Runs the script, every `emit` at `later` [s] after its time. `check` is called often and may throw to stop. Throws Error:
+// "SCRIPT:LINE: what was found, what was expected".
+Authored run_script(const std::string& path, const std::function<void()>& check, double later = 0);
 
 }  // namespace airlight::experiments::authoring

@@ -88,8 +88,10 @@ struct Kind {
   std::string ending;
   std::string (*about)(const std::string& path);
 };
-const std::vector<Kind> kinds{{".toml", about_toml}, {".vdb", about_vdb},  {".obj", about_mesh},   {".ply", about_mesh},
-                              {".off", about_mesh},  {".exr", about_film}, {".png", about_picture}};
+const std::vector<Kind> kinds{{".toml", about_toml},   {".vdb", about_vdb},     {".obj", about_mesh},
+                              {".ply", about_mesh},    {".off", about_mesh},    {".exr", about_film},
+                              {".png", about_picture}, {".jpg", about_picture}, {".jpeg", about_picture},
+                              {".hdr", about_picture}};
 
 int info(const std::vector<std::string>& files) {
   for (const std::string& path : files) {
@@ -111,7 +113,8 @@ int info(const std::vector<std::string>& files) {
 void add_info(Commands& commands) {
   const auto files = std::make_shared<std::vector<std::string>>();
   CLI::App* c = add_command(commands.app, "info", "say what a file holds: a scene, a flow, a VDB, a mesh, a picture");
-  c->add_option("FILE", *files, "files to describe (required): .toml, .vdb, .obj, .ply, .off, .exr or .png");
+  c->add_option("FILE", *files,
+                "files to describe (required): .toml, .vdb, .obj, .ply, .off, .exr, .hdr, .png or .jpg");
   commands.add_limit(c);
   commands.add_data(c);
   commands.on(c, [files] {

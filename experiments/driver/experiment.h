@@ -29,6 +29,11 @@ struct SequenceCase {
   int first = 0, step = 1;   // its values
   double turn = 0;           // [rad] by which suns and environments turn about the y axis
   Vec3 move = Vec3::Zero();  // [m] by which point and spot lights move
+  struct Way {
+    std::string path;              // of an override
+    std::vector<double> from, to;  // its numbers in the first and the last picture, on a straight line between them
+  };
+  std::vector<Way> along;
 };
 
 struct SceneCase {  // kind "numbers": the input of a probe, all empty where there is none; "flow": the problem

@@ -232,7 +232,8 @@ void RowKeeper::finish(const Row& row, std::optional<Row>& place) {
   journal_.add(row);
   made_rows_ = true;
   place = row;
-  say(row, row.note.empty() ? "done" : "refused");
+  // A note may also say something about figures that are there.
+  say(row, row.note.empty() || !row.measures.empty() || row.runs > 0 ? "done" : "refused");
 }
 
 void RowKeeper::say(const Row& row, const char* how) const {

@@ -1,8 +1,10 @@
 #include "experiments/driver/sequence_images.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "experiments/application/interrupt.h"
 #include "experiments/driver/keeper.h"
@@ -21,10 +23,27 @@ using scene::Film;
 const char* flicker = "flicker";
 const char* change_counter = "change";
 
+// The value at this share of the way, as TOML text.
+std::string value_at(const SequenceCase::Way& way, double share) {
+  std::vector<double> at;
+  for (std::size_t i = 0; i < way.from.size(); ++i) at.push_back(std::lerp(way.from[i], way.to[i], share));
+  return at.size() == 1 ? fmt::format("{}", at[0]) : fmt::format("[{}]", fmt::join(at, ", "));
+}
+
+SequenceCase::Way read_way(scene::load::TableReader reader) {
+  reader.allow({"path", "from", "to"});
+  SequenceCase::Way way{reader.text("path"), reader.numbers("from", scene::load::any_number), {}};
+  if (way.from.empty()) reader.expected("from", "a list of one number or more");
+  way.to = reader.numbers("to", scene::load::any_number, way.from.size());
+  return way;
+}
+
 std::shared_ptr<const scene::Scene> picture_scene(const SceneCase& c, int picture) {
   const SequenceCase& frames = *c.frames;
   Pairs overrides = c.overrides;
   if (!frames.key.empty()) overrides[frames.key] = std::to_string(frames.first + picture * frames.step);
+  for (const SequenceCase::Way& way : frames.along)
+    overrides[way.path] = value_at(way, double(picture) / (frames.count - 1));
   auto scene = std::make_shared<scene::Scene>(scene::load_scene(c.file.string(), overrides));
   turn_lights(*scene, frames.turn * picture);
   for (scene::Light& light : scene->lights) light = scene::moved(light, picture * frames.move);
@@ -221,7 +240,7 @@ void SequenceImages::read(const TableReader& top, Experiment& e) const { e.layer
 
 void SequenceImages::read_scene(const TableReader& reader, SceneCase& c) const {
   TableReader frames = reader.required_table("frames");
-  frames.allow({"count", "key", "first", "step", "turn", "move"});
+  frames.allow({"count", "key", "first", "step", "turn", "move", "along"});
   c.frames.emplace();
   c.frames->count = int(frames.integer("count", 2, 1000));
   c.frames->key = frames.text("key", "");
@@ -229,6 +248,7 @@ void SequenceImages::read_scene(const TableReader& reader, SceneCase& c) const {
   c.frames->step = int(frames.integer("step", 1, 1000, 1));
   c.frames->turn = frames.number("turn", {-10, 10}, 0.0);
   c.frames->move = frames.vector("move", Vec3::Zero());
+  for (const TableReader& way : frames.tables("along")) c.frames->along.push_back(read_way(way));
 }
 
 void SequenceImages::read_method(const TableReader& reader, const Experiment& e, MethodCase& method) const {
@@ -247,10 +267,10 @@ void SequenceImages::check_metrics(Experiment& e, const std::string& position) c
 void SequenceImages::check(const Experiment& e, const RunOptions&) const {
   for (const SceneCase& c : e.scenes)
     if (picture_scene(c, 0)->hash == picture_scene(c, c.frames->count - 1)->hash)
-      throw Error(
-          fmt::format("{}: nothing changes from picture to picture: expected a key, a turn or a move of a light "
-                      "that can",
-                      c.position));
+      throw Error(fmt::format(
+          "{}: nothing changes from picture to picture: expected a key, a way along which values change, or a turn or "
+          "a move of a light that can",
+          c.position));
 }
 
 std::vector<RowColumn> SequenceImages::time_columns() const {

@@ -7,17 +7,21 @@
 #include <cctype>
 #include <sstream>
 
+#include "experiments/application/build_info.h"
 #include "experiments/application/fit_sequence.h"
 #include "experiments/application/folder_lock.h"
 #include "experiments/application/frames.h"
+#include "experiments/application/interrupt.h"
 #include "experiments/application/json.h"
 #include "experiments/application/json_value.h"
 #include "experiments/application/progress.h"
 #include "experiments/application/say.h"
 #include "experiments/application/simulation.h"
 #include "experiments/application/solvers.h"
+#include "experiments/authoring/write_scene.h"
 #include "experiments/driver/toml_values.h"
 #include "scene/base/atomic_file.h"
+#include "scene/base/content_key.h"
 #include "scene/base/nearest.h"
 #include "scene/base/printable.h"
 #include "scene/base/read_file.h"
@@ -60,6 +64,8 @@ TableReader reader_of(const toml::table& list, const std::string& name) {
   TableReader reader(*table, name);
   if (table->contains("fit"))
     reader.allow({"fit", "quick", "paper"});
+  else if (table->contains("script"))
+    reader.allow({"script", "quick", "paper"});
   else
     reader.allow({"problem", "solver", "quick", "paper"});
   return reader;
@@ -71,7 +77,7 @@ std::string simulated(const toml::table& list, const std::string& name) {
   if (!list[name].as_table()->contains("fit")) return name;
   const std::string of = reader.text("fit");
   const toml::table* other = list[of].as_table();
-  if (!other || other->contains("fit")) reader.expected("fit", "the name of a sequence that is simulated");
+  if (!other || !other->contains("problem")) reader.expected("fit", "the name of a sequence that is simulated");
   return of;
 }
 
@@ -97,21 +103,25 @@ std::string sequence_files(const Folders& folders, const std::string& asked, con
   if (std::find(known.begin(), known.end(), name) == known.end())
     throw Error(fmt::format("{}: there is no sequence '{}' in {}{}", where, name, list_of(folders.root).string(),
                             scene::nearest_hint(name, known)));
-  const std::string of = simulated(list, name);
-  const auto problem = scene::load_flow(problem_of(folders.root, reader_of(list, of)).string());
-  std::vector<std::string> kinds{".vdb", ".csv"};
-  if (of != name) {
-    kinds = {".csv", ".residual"};
-  } else {
-    if (!problem.particles.empty()) kinds.push_back(".particles.csv");
-    for (const scene::NamedDensity& d : problem.densities) kinds.push_back("." + d.name + ".csv");
+  std::string stem = name;
+  std::vector<std::string> kinds{".csv"};
+  if (!list[name]["script"]) {
+    const std::string of = simulated(list, name);
+    const auto problem = scene::load_flow(problem_of(folders.root, reader_of(list, of)).string());
+    stem = problem.name;
+    if (of != name) {
+      kinds = {".csv", ".residual"};
+    } else {
+      kinds = {".vdb", ".csv"};
+      if (!problem.particles.empty()) kinds.push_back(".particles.csv");
+      for (const scene::NamedDensity& d : problem.densities) kinds.push_back("." + d.name + ".csv");
+    }
   }
   if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
     throw Error(fmt::format("{}: the sequence '{}' has no files {}, expected one of {}", where, name, kind,
                             fmt::join(kinds, ", ")));
   const std::size_t ending = kind.rfind('.');
-  return (folder_of(folders, name, profile) / (problem.name + kind.substr(0, ending) + ".####" + kind.substr(ending)))
-      .string();
+  return (folder_of(folders, name, profile) / (stem + kind.substr(0, ending) + ".####" + kind.substr(ending))).string();
 }
 
 void name_sequences(const Folders& folders, const std::string& profile, const std::string& where, Pairs& overrides,
@@ -145,6 +155,38 @@ void fit(const Folders& folders, const TableReader& reader, const std::string& n
   fit_sequence(fitted, progress.execution(threads));
 }
 
+// Gaussians of a script of strokes, whose emitters go on from frame to frame.
+void author(const Folders& folders, const TableReader& reader, const std::string& name, const std::string& profile) {
+  TableReader of_profile = reader.required_table(profile);
+  of_profile.allow({"frames", "rate"});
+  const int frames = int(of_profile.integer("frames", 1, 10000));
+  const double rate = of_profile.number("rate", {1e-3, 1e6});
+  const std::string script = (folders.root / "experiments" / reader.text("script")).string();
+  const fs::path folder = folder_of(folders, name, profile);
+  make_folder(folder);
+  const FolderLock lock = FolderLock::wait_for(folder);
+  const auto base = authoring::run_script(script, check_interrupted).scene;
+  const std::string made_of = content_key({scene::read_whole_file(script), base ? base->hash : "",
+                                           std::to_string(frames), fmt::format("{}", rate), source_id()});
+  const fs::path record = folder / "made_of";
+  if (fs::exists(record) && scene::read_whole_file(record.string()) == made_of) return;
+  for (const auto& entry : fs::directory_iterator(folder)) fs::remove_all(entry.path());
+  Progress progress(fmt::format("sequence {} ({})", name, profile));
+  std::string history = "frame,gaussians\n";
+  for (int frame = 0; frame < frames; ++frame) {
+    progress.update(double(frame) / frames);
+    const authoring::Authored authored = authoring::run_script(script, check_interrupted, frame / rate);
+    const auto files = authoring::scene_files(authored, script, (folder / "scene.toml").string());
+    if (files.tables.size() != 1)
+      throw Error(
+          fmt::format("{}: {} colours in frame {}, expected one for a sequence", script, files.tables.size(), frame));
+    scene::write_file_atomically((folder / fmt::format("{}.{:04}.csv", name, frame)).string(), files.tables[0].csv);
+    history += fmt::format("{},{}\n", frame, files.tables[0].gaussians);
+  }
+  scene::write_file_atomically((folder / "history.csv").string(), history);
+  scene::write_file_atomically(record.string(), made_of);
+}
+
 }  // namespace
 
 void make_sequence(const Folders& folders, const std::string& asked, const std::string& profile, int threads) {
@@ -152,6 +194,7 @@ void make_sequence(const Folders& folders, const std::string& asked, const std::
   const toml::table list = read_list(folders.root);
   const TableReader reader = reader_of(list, name);
   scene::make_private_folder(folders.cache, "sequences");
+  if (list[name]["script"]) return author(folders, reader, name, profile);
   if (const std::string of = simulated(list, name); of != name) {
     make_sequence(folders, of, profile, threads);
     fit(folders, reader, name, of, profile, threads);

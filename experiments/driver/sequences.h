@@ -9,7 +9,7 @@ namespace airlight::experiments {
 
 // The pattern of its files, as a `file` with a `frame`, whether they are there or not: of "NAME" its frames, of "NAME.csv" the coefficients
 // of its density, of "NAME.OTHER.csv" those of another, of "NAME.particles.csv" the places of its particles; of a fit "NAME.csv" the
-// Gaussians, "NAME.residual" what they leave. Throws Error, beginning with `where`: no such sequence in experiments/sequences.toml, no
+// Gaussians, "NAME.residual" what they leave; of a script "NAME.csv" the Gaussians. Throws Error, beginning with `where`: no such sequence in experiments/sequences.toml, no
 // such files.
 std::string sequence_files(const Folders&, const std::string& name, const std::string& profile,
                            const std::string& where);
@@ -18,7 +18,7 @@ std::string sequence_files(const Folders&, const std::string& name, const std::s
 void name_sequences(const Folders&, const std::string& profile, const std::string& where, Pairs& overrides,
                     std::vector<std::string>& names);
 
-// Simulates it, and fits Gaussians to it where that is asked for, unless it is there and of the same problem, settings and program; one
+// Simulates it, fits Gaussians to it or runs its script, whatever the list says, unless it is there and of the same problem, settings and program; one
 // that was stopped goes on. Throws Error (file, line, column), Interrupted.
 void make_sequence(const Folders&, const std::string& name, const std::string& profile, int threads);
 

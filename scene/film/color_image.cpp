@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <png.h>
 
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -15,6 +14,7 @@
 #include "scene/base/limits.h"
 #include "scene/base/printable.h"
 #include "scene/base/read_file.h"
+#include "scene/film/color_image_parts.h"
 #include "scene/film/film.h"
 #include "scene/film/grey_image_parts.h"
 
@@ -22,20 +22,6 @@ namespace airlight::scene {
 namespace {
 
 constexpr int most_side = 16384;  // as of films
-constexpr std::size_t most_bytes = std::size_t(1) << 30;
-
-void require_size(const std::string& path, long long width, long long height) {
-  if (width < 1 || height < 1 || width > most_side || height > most_side)
-    throw Error(fmt::format("{}: {} x {} pixels, expected 1 to {} a side", path, width, height, most_side));
-}
-
-// IEC 61966-2-1.
-std::array<float, 256> linear_of_srgb() {
-  std::array<float, 256> table;
-  for (int v = 0; v < 256; ++v)
-    table[v] = float(v / 255.0 <= 0.04045 ? v / 255.0 / 12.92 : std::pow((v / 255.0 + 0.055) / 1.055, 2.4));
-  return table;
-}
 
 struct PngReader {
   png_image image{};
@@ -44,7 +30,7 @@ struct PngReader {
 };
 
 ColorImage read_png(const std::string& path) {
-  const std::string file = read_whole_file(path, most_bytes);
+  const std::string file = read_whole_file(path, most_image_bytes);
   PngReader reader;
   png_image& png = reader.image;
   const auto damaged = [&] { return Error(fmt::format("{}: damaged PNG: {}", path, printable(png.message, 200))); };
@@ -56,8 +42,6 @@ ColorImage read_png(const std::string& path) {
     throw Error(fmt::format("{}: has an alpha channel, expected a picture without", path));
   png.format = PNG_FORMAT_RGB;
   png.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;
-  require_memory(double(PNG_IMAGE_SIZE(png)) * (1 + sizeof(float)),
-                 fmt::format("{}: {} x {} pixels", path, png.width, png.height));
   std::vector<png_byte> bytes(PNG_IMAGE_SIZE(png));
   ColorImage image{int(png.width), int(png.height), {}};
   image.rgb.reserve(bytes.size());
@@ -68,7 +52,7 @@ ColorImage read_png(const std::string& path) {
 }
 
 DepthImage read_pfm(const std::string& path) {
-  const std::string file = read_whole_file(path, most_bytes);
+  const std::string file = read_whole_file(path, most_image_bytes);
   std::istringstream in(file.substr(0, 200));
   std::string kind, scale;
   long long width = 0, height = 0;
@@ -94,20 +78,42 @@ DepthImage read_pfm(const std::string& path) {
   return image;
 }
 
+ColorImage read_layer(const std::string& path, const std::string& layer) {
+  Film film = read_exr(path, most_image_bytes);
+  require_size(path, film.width, film.height);
+  film.layer(layer);
+  return {film.width, film.height, std::move(film.layers[layer])};
+}
+
 }  // namespace
+
+void require_size(const std::string& path, long long width, long long height) {
+  if (width < 1 || height < 1 || width > most_side || height > most_side)
+    throw Error(fmt::format("{}: {} x {} pixels, expected 1 to {} a side", path, width, height, most_side));
+  require_memory(3.0 * double(width) * double(height) * (1 + sizeof(float)),
+                 fmt::format("{}: {} x {} pixels", path, width, height));
+}
+
+std::array<float, 256> linear_of_srgb() {
+  std::array<float, 256> table;
+  for (int v = 0; v < 256; ++v)
+    table[v] = float(v / 255.0 <= 0.04045 ? v / 255.0 / 12.92 : std::pow((v / 255.0 + 0.055) / 1.055, 2.4));
+  return table;
+}
 
 ColorImage read_color_image(const std::string& path, const std::string& layer) {
   const std::string kind = file_ending(path);
-  if (kind != ".png" && kind != ".exr") throw Error(fmt::format("{}: expected a name in .png or .exr", path));
   ColorImage image;
-  if (kind == ".png") {
+  if (kind == ".png")
     image = read_png(path);
-  } else {
-    Film film = read_exr(path, most_bytes);
-    require_size(path, film.width, film.height);
-    film.layer(layer);
-    image = {film.width, film.height, std::move(film.layers[layer])};
-  }
+  else if (kind == ".jpg" || kind == ".jpeg")
+    image = read_jpeg(path);
+  else if (kind == ".hdr")
+    image = read_radiance(path);
+  else if (kind == ".exr")
+    image = read_layer(path, layer);
+  else
+    throw Error(fmt::format("{}: expected a name in .png, .jpg, .hdr or .exr", path));
   for (std::size_t i = 0; i < image.rgb.size(); ++i)
     if (!(image.rgb[i] >= 0 && std::isfinite(image.rgb[i])))
       throw Error(fmt::format("{}: column {}, row {}: {}, expected a finite number >= 0", path, i / 3 % image.width,

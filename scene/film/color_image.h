@@ -10,9 +10,9 @@ struct ColorImage {
   std::vector<float> rgb;  // x fastest, row 0 the top; linear light
 };
 
-// PNG: sRGB, 8 bits a channel (of 16 the higher ones), turned into linear light; no alpha. EXR: the layer's R, G, B as they are ("mean":
-// the file's own). Throws Error, one line that names file, and column and row where a pixel is to blame: another kind of file, damaged,
-// truncated, NaN, infinity or below 0, more than 16384 pixels a side.
+// PNG and JPEG: sRGB, 8 bits a channel (the higher ones of 16), turned into linear light; no alpha. Radiance picture (.hdr): linear, divided
+// by its exposure. EXR: the layer's R, G, B as they are ("mean": the file's own). Throws Error, one line that names file, and column and
+// row where a pixel is to blame: another kind of file, damaged, truncated, NaN, infinity or below 0, more than 16384 pixels a side.
 ColorImage read_color_image(const std::string& path, const std::string& layer = "mean");
 
 struct DepthImage {

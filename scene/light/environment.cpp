@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "scene/base/error.h"
+#include "scene/base/file_ending.h"
+#include "scene/film/color_image.h"
 #include "scene/film/exr_header.h"
 #include "scene/film/film.h"
 #include "scene/light/lat_long.h"
@@ -116,10 +118,15 @@ EnvironmentLight make_sh_environment(std::vector<Rgb> coefficients, const Mat3& 
 }
 
 std::shared_ptr<const EnvironmentMap> read_environment_map(const std::string& path) {
+  auto map = std::make_shared<EnvironmentMap>();
+  if (file_ending(path) != ".exr") {
+    ColorImage image = read_color_image(path);
+    *map = {image.width, image.height, std::move(image.rgb)};
+    return map;
+  }
   const Film film = read_exr(path);
   if (is_cube_map(path))
     throw Error(fmt::format("{}: found a cube map, expected a map of longitude and latitude", path));
-  auto map = std::make_shared<EnvironmentMap>();
   map->width = film.width;
   map->height = film.height;
   try {

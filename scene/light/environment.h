@@ -39,8 +39,8 @@ EnvironmentLight make_map_environment(std::shared_ptr<const EnvironmentMap>, con
 // `coefficients.size()` must be a square, at most max_sh_order^2. Throws Error otherwise.
 EnvironmentLight make_sh_environment(std::vector<Rgb> coefficients, const Mat3& to_map, const Rgb& scale);
 
-// Reads a lat-long RGB map from OpenEXR (any compression); Error on NaN, infinity or a negative value (with
-// the pixel). Negative values below 1 % of the mean, which lossy compression leaves where a map is dark, become 0.
+// Reads a lat-long RGB map from OpenEXR (any compression) or whatever read_color_image knows; Error on NaN, infinity or a negative
+// value (with the pixel). In EXR files, negative values below 1 % of the mean, which lossy compression leaves in the dark, become 0.
 std::shared_ptr<const EnvironmentMap> read_environment_map(const std::string& path);
 
 // Radiance from direction w [W/m^2/sr].

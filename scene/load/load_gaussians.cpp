@@ -43,13 +43,14 @@ std::vector<Gaussian> read_gaussians_csv(const std::string& path, std::vector<in
 }
 
 GaussianSum read_gaussian_sum(TableReader& reader, const std::string& folder) {
-  reader.allow(medium_keys_and({"constant", "cutoff", "gaussians", "file"}));
+  reader.allow(medium_keys_and({"constant", "cutoff", "gaussians", "file", "frame"}));
   GaussianSum sum;
   sum.constant = reader.number("constant", density_range, 0);
   sum.cutoff = reader.number("cutoff", widths, infinity);
   if (reader.one_of({"gaussians", "file"}) == "file") {
-    sum.gaussians = read_gaussians_csv(find_asset(reader, "file", folder));
+    sum.gaussians = read_gaussians_csv(find_asset(reader, "file", name_of_frame(reader, "file"), folder));
   } else {
+    reader.allow(medium_keys_and({"constant", "cutoff", "gaussians"}));
     for (const TableReader& gaussian : reader.tables("gaussians")) sum.gaussians.push_back(read_gaussian(gaussian));
   }
   return sum;

@@ -201,7 +201,7 @@ TEST_CASE("a backdrop that cannot be read is refused in one line", "[backdrop][l
   CHECK_THAT(said("none.png", depth), Contains("s.toml:8:") && Contains("none.png"));
   CHECK_THAT(said("cut.png", depth), Contains("cut.png") && Contains("damaged PNG"));
   CHECK_THAT(said("alpha.png", depth), Contains("alpha channel"));
-  CHECK_THAT(said("depth.pfm", depth), Contains("expected a name in .png or .exr"));
+  CHECK_THAT(said("depth.pfm", depth), Contains("expected a name in .png, .jpg, .hdr or .exr"));
   CHECK_THAT(said("nan.exr", depth), Contains("column 1, row 0: nan"));
   CHECK_THAT(said("minus.exr", depth), Contains("column 1, row 0: -1"));
   CHECK_THAT(said("film.exr", depth + "layer = 'no'\n"), Contains("no"));
