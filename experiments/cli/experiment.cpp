@@ -18,6 +18,7 @@
 #include "experiments/driver/plots.h"
 #include "experiments/driver/run.h"
 #include "experiments/driver/run_progress.h"
+#include "experiments/driver/tables.h"
 #include "gpu/context.h"
 #include "scene/base/atomic_file.h"
 #include "scene/base/error.h"
@@ -226,6 +227,24 @@ int plot_experiments(const ExperimentOptions& options) {
   return 0;
 }
 
+int write_tables(const ExperimentOptions& options) {
+  check_profile(options);
+  const Folders folders = folders_of(options);
+  bool any = false;
+  for (const std::string& id : choose_experiments(folders.root, options.names)) {
+    const std::string name = results_name(id, options.profile);
+    const auto files = recorded_tables(read_experiment(folders, id, options.profile), folders.results / name);
+    if (files.empty()) continue;
+    any = true;
+    for (const auto& [file, text] : files) scene::write_file_atomically((folders.results / name / file).string(), text);
+    fmt::print("{}/table.md\n", shown(folders, name));
+  }
+  if (!any)
+    throw Error(fmt::format("no records of these experiments below {}: `airlight experiment run NAME` writes them",
+                            folders.results.string()));
+  return 0;
+}
+
 int judge_gates(const ExperimentOptions& options, std::vector<GateResult>& results) {
   check_profile(options);
   const Folders folders = folders_of(options);
@@ -325,6 +344,12 @@ void add_experiment(Commands& commands) {
   add_selection(plot, *options);
   add_results(plot, *options);
   commands.on(plot, [options] { return plot_experiments(*options); });
+  CLI::App* tables = add_command(*experiment, "tables",
+                                 "write the tables of finished experiments again from their records, after an edit of "
+                                 "claims or titles");
+  add_selection(tables, *options);
+  add_results(tables, *options);
+  commands.on(tables, [options] { return write_tables(*options); });
 }
 
 void add_gates(Commands& commands) {

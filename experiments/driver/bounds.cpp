@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "experiments/driver/tables.h"
 #include "scene/base/error.h"
 #include "scene/base/read_file.h"
 
@@ -11,26 +12,6 @@ namespace airlight::experiments {
 namespace {
 
 const std::string header = "scene,method,setting,metric,device,measured,at_least,at_most";
-
-// One line of a table that this project writes: fields between commas, quoted where they hold one.
-std::vector<std::string> fields(const std::string& line, const std::string& where) {
-  std::vector<std::string> all(1);
-  bool quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    const char c = line[i];
-    if (c == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"') {
-      all.back() += line[++i];
-    } else if (c == '"') {
-      quoted = !quoted;
-    } else if (c == ',' && !quoted) {
-      all.emplace_back();
-    } else {
-      all.back() += c;
-    }
-  }
-  if (quoted) throw Error(where + ": a quote is not closed");
-  return all;
-}
 
 double number(const std::string& text, double fallback, const std::string& where) {
   if (text.empty()) return fallback;
@@ -49,7 +30,7 @@ const GateCase& covering(const Experiment& e, const GateCase& line, const std::s
 }
 
 void add_line(const Experiment& e, std::vector<GateCase>& gates, const std::string& line, const std::string& where) {
-  const auto field = fields(line, where);
+  const auto field = csv_fields(line, where);
   if (field.size() != 8) throw Error(fmt::format("{}: {} fields, expected {}", where, field.size(), header));
   GateCase gate;
   gate.by_row = true;

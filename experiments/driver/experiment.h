@@ -107,6 +107,15 @@ struct ExpectedCase {
   std::string unit;      // that the figure is printed in (expected.h); empty: the usual one
 };
 
+// What a table shows, checked on it by scripts/figures. `table`: the folder that it is checked on, "group/name" or
+// "group/name.paper".
+struct ClaimCase {
+  std::string where, claim, verdict, table;
+};
+struct Conclusion {
+  std::string text, table;
+};
+
 struct Experiment {
   std::string id;  // "group/name"
   std::string title, paper, about;
@@ -129,6 +138,8 @@ struct Experiment {
   std::vector<GateCase> gates;
   std::vector<SpeedUpCase> speed_ups;
   std::vector<ExpectedCase> expected;
+  std::optional<Conclusion> conclusion;
+  std::vector<ClaimCase> claims;
 };
 
 // The reference that judges the scene.

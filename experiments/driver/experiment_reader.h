@@ -54,8 +54,8 @@ class ExperimentReader {
   // Whose speed-up is expected: the table has it, with its interval.
   std::string baseline_of(const TableReader& reader, const ExpectedCase& e) const;
   void check_summary(const TableReader& top) const;
-  // Only checks [[claim]] and [[erratum]]: scripts/figures makes tables of them.
-  void claims(const TableReader& top) const;
+  // [conclusion] and verdicts of [[claim]], for table.md; [[erratum]] is only checked. scripts/figures judges the conditions.
+  void claims(const TableReader& top);
 
   Folders folders_;
   std::string file_;

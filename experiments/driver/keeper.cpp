@@ -11,6 +11,7 @@
 
 #include "experiments/application/folders.h"
 #include "experiments/application/interrupt.h"
+#include "experiments/application/json_value.h"
 #include "experiments/application/machine.h"
 #include "experiments/application/probe.h"
 #include "experiments/application/progress.h"
@@ -253,15 +254,17 @@ void RowKeeper::write() const {
   const fs::path folder = options_.folders.results / name_;
   make_folder(folder);
   const auto plots = draw_plots(outcome_, folder);
+  const std::vector<NamedTable> all = tables(outcome_);
+  const nlohmann::json record = run_record(outcome_, all, plots);
   bool changed = made_rows_;
-  for (const auto& [name, text] : table_files(outcome_, plots)) {
+  for (const auto& [name, text] : table_files(outcome_, all, record)) {
     if (is_text_of(folder / name, text)) continue;
     scene::write_file_atomically((folder / name).string(), text);
     changed = true;
   }
   // The record tells of the run that made the tables.
   if (changed || !fs::exists(folder / "run.json"))
-    scene::write_file_atomically((folder / "run.json").string(), run_record(outcome_, plots));
+    scene::write_file_atomically((folder / "run.json").string(), record.dump(1) + "\n");
 }
 
 }  // namespace airlight::experiments

@@ -79,9 +79,9 @@ Experiment ExperimentReader::read() {
     kinds.push_back(kind->name());
     if (toml_["kind"].value_or(std::string()) == kind->name()) experiment_.kind = kind;
   }
-  std::vector<std::string> keys{"kind",     "title",   "paper",  "about", "summary", "metrics",
-                                "in_tests", "scene",   "method", "plot",  "gate",    "speed_up",
-                                "expected", "profile", "timing", "like",  "claim",   "erratum"};
+  std::vector<std::string> keys{"kind",   "title",  "paper", "about",   "summary",   "metrics",  "in_tests",
+                                "scene",  "method", "plot",  "gate",    "speed_up",  "expected", "profile",
+                                "timing", "like",   "claim", "erratum", "conclusion"};
   const std::vector<std::string> of_kind = kind().keys();
   keys.insert(keys.end(), of_kind.begin(), of_kind.end());
   top.allow(keys);

@@ -233,17 +233,26 @@ void ExperimentReader::check_summary(const TableReader& top) const {
   }
 }
 
-void ExperimentReader::claims(const TableReader& top) const {
+void ExperimentReader::claims(const TableReader& top) {
   const auto paper_exists = [&](const TableReader& reader) {
     if (reader.has("group") && !fs::is_directory(folders_.root / "experiments" / reader.file_name("group")))
       reader.expected("group", "a folder of experiments/");
   };
+  const auto folder_of = [&](const TableReader& reader) {
+    const fs::path table = reader.text("table", experiment_.id);
+    return (table.extension() == ".csv" ? table.parent_path() : table).string();
+  };
+  if (auto reader = top.table("conclusion")) {
+    reader->allow({"text", "holds", "table"});
+    reader->text("holds");
+    experiment_.conclusion = {reader->text("text"), folder_of(*reader)};
+  }
   for (auto& [table, reader] : lists(top, "claim")) {
     reader.allow({"where", "claim", "published", "improved", "verdict", "holds", "group", "table"});
-    for (const std::string key : {"where", "claim", "verdict"}) reader.text(key);
-    for (const std::string key : {"published", "improved", "holds", "table"}) reader.text(key, "");
+    for (const std::string key : {"published", "improved", "holds"}) reader.text(key, "");
     paper_exists(reader);
     const std::string verdict = reader.text("verdict");
+    experiment_.claims.push_back({reader.text("where"), reader.text("claim"), verdict, folder_of(reader)});
     const std::string short_verdict = verdict.substr(0, verdict.find(':'));
     const std::vector<std::string> verdicts{"reproduced", "not reproduced", "failure reproduced", "not comparable"};
     if (!short_verdict.starts_with("holds only where ") &&

@@ -1,7 +1,6 @@
 #include "experiments/application/build_info.h"
 #include "experiments/application/json_value.h"
 #include "experiments/application/machine.h"
-#include "experiments/driver/comparisons.h"
 #include "experiments/driver/expected.h"
 #include "experiments/driver/tables.h"
 
@@ -56,17 +55,6 @@ json references(const Outcome& outcome) {
   return list;
 }
 
-json tables(const Outcome& outcome) {
-  const Experiment& e = outcome.experiment;
-  json list = json::array();
-  list.push_back({{"file", "summary.csv"}, {"title", e.title}});
-  if (e.stages) list.push_back({{"file", "stages.csv"}, {"title", "Stages"}});
-  if (!e.expected.empty()) list.push_back({{"file", "expected.csv"}, {"title", "Printed and measured"}});
-  if (!e.speed_ups.empty()) list.push_back({{"file", "speed_up.csv"}, {"title", "Equal error, equal time"}});
-  if (e.orders && orders(outcome).size() > 1) list.push_back({{"file", "orders.csv"}, {"title", "Orders"}});
-  return list;
-}
-
 json rows(const Outcome& outcome) {
   json list = json::array();
   for (const Row& row : outcome.rows) {
@@ -79,7 +67,7 @@ json rows(const Outcome& outcome) {
 
 }  // namespace
 
-std::string run_record(const Outcome& outcome, const std::vector<PlotFile>& plots) {
+json run_record(const Outcome& outcome, const std::vector<NamedTable>& tables, const std::vector<PlotFile>& plots) {
   const Experiment& e = outcome.experiment;
   const Machine machine = this_machine();
   json j = {{"experiment", e.id},
@@ -108,7 +96,8 @@ std::string run_record(const Outcome& outcome, const std::vector<PlotFile>& plot
   j["libraries"] = json::object();
   for (const auto& [name, number] : libraries()) j["libraries"][name] = number;
   j["references"] = references(outcome);
-  j["tables"] = tables(outcome);
+  j["tables"] = json::array();
+  for (const NamedTable& table : tables) j["tables"].push_back({{"file", table.file}, {"title", table.title}});
   j["plots"] = json::array();
   for (const PlotFile& plot : plots) j["plots"].push_back({{"file", plot.file}, {"title", plot.title}});
   j["pictures"] = pictures(outcome);
@@ -117,7 +106,7 @@ std::string run_record(const Outcome& outcome, const std::vector<PlotFile>& plot
     j["gates"].push_back(
         {{"name", gate.name}, {"text", gate.text}, {"passed", gate.passed}, {"skipped", gate.skipped}});
   j["rows"] = rows(outcome);
-  return j.dump(1) + "\n";
+  return j;
 }
 
 }  // namespace airlight::experiments

@@ -6,17 +6,22 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <sstream>
 
-#include "experiments/application/build_info.h"
-#include "experiments/application/machine.h"
-#include "experiments/driver/comparisons.h"
+#include "experiments/application/json.h"
+#include "experiments/application/json_value.h"
+#include "experiments/driver/agreement.h"
 #include "experiments/driver/expected.h"
 #include "experiments/driver/kind.h"
+#include "scene/base/error.h"
+#include "scene/base/read_file.h"
 
 namespace airlight::experiments {
 namespace {
 
 using Cells = std::vector<std::string>;
+
+constexpr const char* rows_file = "summary.csv";
 
 std::string number(double x) { return std::isfinite(x) ? fmt::format("{:.9g}", x) : ""; }
 
@@ -26,7 +31,7 @@ std::string csv_line(const Cells& cells) {
   return fmt::format("{}\n", fmt::join(fields, ","));
 }
 
-std::string csv(const std::vector<Cells>& lines) {
+std::string csv(const TextTable& lines) {
   std::string out;
   for (const Cells& line : lines) out += csv_line(line);
   return out;
@@ -51,8 +56,15 @@ bool any(const Outcome& outcome, bool (*has)(const Row&)) {
   return std::any_of(outcome.rows.begin(), outcome.rows.end(), has);
 }
 
+bool has_films(const Outcome& outcome) {
+  return any(outcome, [](const Row& r) { return r.width > 0; });
+}
+
+// Size of the row's film in pixels; empty where the row renders none.
+std::string film_size(const Row& row) { return row.width > 0 ? fmt::format("{}x{}", row.width, row.height) : ""; }
+
 // The table for people, header first.
-std::vector<Cells> summary(const Outcome& outcome) {
+TextTable summary(const Outcome& outcome) {
   const bool parameter = any(outcome, [](const Row& r) { return r.parameter.has_value(); });
   const bool setting = any(outcome, [](const Row& r) { return !r.setting.empty(); });
   const bool note = any(outcome, [](const Row& r) { return !r.note.empty(); });
@@ -64,6 +76,8 @@ std::vector<Cells> summary(const Outcome& outcome) {
   if (parameter) head.push_back("parameter");
   head.push_back("method");
   if (setting) head.push_back("setting");
+  const bool films = has_films(outcome);
+  if (films) head.insert(head.end(), {"film", "profile"});
   for (const std::string& metric : outcome.experiment.metrics) head.push_back(metric);
   using Columns = std::vector<RowColumn>;
   const Columns times = timed ? outcome.experiment.kind->time_columns() : Columns{};
@@ -82,7 +96,7 @@ std::vector<Cells> summary(const Outcome& outcome) {
   if (device) head.push_back("device");
   if (outcome.experiment.left_out) head.push_back("leaves out");
   if (note) head.push_back("note");
-  std::vector<Cells> lines{head};
+  TextTable lines{head};
   for (std::size_t i = 0; i < outcome.rows.size(); ++i) {
     const Row& row = outcome.rows[i];
     Cells line;
@@ -90,6 +104,7 @@ std::vector<Cells> summary(const Outcome& outcome) {
     if (parameter) line.push_back(row.parameter ? fmt::format("{:g}", *row.parameter) : "");
     line.push_back(row.method);
     if (setting) line.push_back(row.setting);
+    if (films) line.insert(line.end(), {film_size(row), outcome.experiment.profile});
     for (const std::string& metric : outcome.experiment.metrics) {
       const auto found =
           std::find_if(row.measures.begin(), row.measures.end(), [&](const Measure& m) { return m.name == metric; });
@@ -108,14 +123,14 @@ std::vector<Cells> summary(const Outcome& outcome) {
 }
 
 // Milliseconds of every stage of every row, header first.
-std::vector<Cells> stage_table(const Outcome& outcome) {
+TextTable stage_table(const Outcome& outcome) {
   std::vector<std::string> names;
   for (const Row& row : outcome.rows)
     for (const auto& [name, seconds] : row.stages)
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   Cells head{"scene", "method", "frames per second"};
   for (const std::string& name : names) head.push_back(name + " [ms]");
-  std::vector<Cells> lines{head};
+  TextTable lines{head};
   for (const Row& row : outcome.rows) {
     if (row.runs == 0) continue;
     Cells line{row.scene, row.setting.empty() ? row.method : row.method + " " + row.setting,
@@ -130,17 +145,14 @@ std::vector<Cells> stage_table(const Outcome& outcome) {
   return lines;
 }
 
-std::string markdown(const std::vector<Cells>& lines) {
-  std::string out;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    out += fmt::format("| {} |\n", fmt::join(lines[i], " | "));
-    if (i == 0) out += fmt::format("|{}|\n", fmt::join(Cells(lines[0].size(), "---"), "|"));
-  }
-  return out;
+// A table that csv() wrote.
+TextTable read_table(const std::filesystem::path& file) {
+  TextTable lines;
+  std::istringstream text(scene::read_whole_file(file.string()));
+  for (std::string line; std::getline(text, line);)
+    lines.push_back(csv_fields(line, fmt::format("{}:{}", file.string(), lines.size() + 1)));
+  return lines;
 }
-
-// Where the setting is how fine the grid is.
-TextTable orders_of(const Outcome& outcome) { return outcome.experiment.orders ? orders(outcome) : TextTable{}; }
 
 }  // namespace
 
@@ -155,11 +167,32 @@ std::string csv_field(const std::string& text) {
   return out + "\"";
 }
 
+std::vector<std::string> csv_fields(const std::string& line, const std::string& where) {
+  std::vector<std::string> all(1);
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (c == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"') {
+      all.back() += line[++i];
+    } else if (c == '"') {
+      quoted = !quoted;
+    } else if (c == ',' && !quoted) {
+      all.emplace_back();
+    } else {
+      all.back() += c;
+    }
+  }
+  if (quoted) throw Error(where + ": a quote is not closed");
+  return all;
+}
+
 std::string table_csv(const Outcome& outcome) {
   std::set<std::string> counters;
   for (const Row& row : outcome.rows)
     for (const auto& [name, value] : row.counters) counters.insert(name);
   Cells head{"scene", "parameter", "method", "setting", "renderer", "settings", "layer"};
+  const bool films = has_films(outcome);
+  if (films) head.insert(head.end(), {"film", "profile"});
   for (const std::string& metric : outcome.experiment.metrics)
     for (const char* suffix : {"", "_low", "_high", "_noise_floor"}) head.push_back(metric + suffix);
   head.insert(head.end(), {"seconds", "seconds_low", "seconds_high", "seconds_mad", "runs", "prepare_seconds"});
@@ -174,6 +207,7 @@ std::string table_csv(const Outcome& outcome) {
     Cells line{
         row.scene, row.parameter ? number(*row.parameter) : "", row.method, row.setting, row.renderer, row.settings,
         row.layer};
+    if (films) line.insert(line.end(), {film_size(row), outcome.experiment.profile});
     for (const std::string& metric : outcome.experiment.metrics) {
       const auto m =
           std::find_if(row.measures.begin(), row.measures.end(), [&](const Measure& x) { return x.name == metric; });
@@ -203,68 +237,43 @@ std::string table_csv(const Outcome& outcome) {
   return out;
 }
 
-std::string summary_csv(const Outcome& outcome) { return csv(summary(outcome)); }
-
-std::map<std::string, std::string> table_files(const Outcome& outcome, const std::vector<PlotFile>& plots) {
+std::vector<NamedTable> tables(const Outcome& outcome) {
   const Experiment& e = outcome.experiment;
+  std::vector<NamedTable> all{{rows_file, e.title, summary(outcome)}};
+  if (e.stages) all.push_back({"stages.csv", "Stages", stage_table(outcome)});
+  if (!e.expected.empty()) all.push_back({"expected.csv", "Printed and measured", expected_table(outcome)});
+  if (!e.speed_ups.empty()) all.push_back({"speed_up.csv", "Equal error, equal time", equal_error_and_time(outcome)});
+  if (e.orders)
+    if (const TextTable lines = orders(outcome); lines.size() > 1) all.push_back({"orders.csv", "Orders", lines});
+  return all;
+}
+
+std::map<std::string, std::string> table_files(const Outcome& outcome, const std::vector<NamedTable>& tables,
+                                               const nlohmann::json& record) {
   std::map<std::string, std::string> files{{"table.csv", table_csv(outcome)},
-                                           {"summary.csv", summary_csv(outcome)},
-                                           {"table.md", table_markdown(outcome, plots)}};
-  if (e.stages) files["stages.csv"] = csv(stage_table(outcome));
-  if (!e.expected.empty()) files["expected.csv"] = csv(expected_table(outcome));
-  if (const auto lines = orders_of(outcome); lines.size() > 1) files["orders.csv"] = csv(lines);
-  if (!e.speed_ups.empty()) files["speed_up.csv"] = csv(equal_error_and_time(outcome));
+                                           {"table.md", table_markdown(outcome.experiment, tables, record)}};
+  for (const NamedTable& table : tables) files[table.file] = csv(table.lines);
   return files;
 }
 
-std::string table_markdown(const Outcome& outcome, const std::vector<PlotFile>& plots) {
-  const Experiment& e = outcome.experiment;
-  std::string out = fmt::format("# {}\n\n", e.title);
-  if (!e.summary.empty()) out += summary_text(outcome) + "\n\n";
-  if (!e.paper.empty()) out += fmt::format("{}.\n\n", e.paper);
-  if (!e.about.empty()) out += e.about + "\n\n";
-  if (!outcome.complete)
-    out += "This run is not complete: it was interrupted, or a scene failed. Rows are missing.\n\n";
-  out += markdown(summary(outcome)) + "\n";
-  if (e.stages)
-    out += "## Stages\n\nOf one render, median of the runs; a blank is a stage that the row does not have.\n\n" +
-           markdown(stage_table(outcome)) + "\n";
-  if (!e.expected.empty()) {
-    out += "## Printed and measured\n\n" + markdown(expected_table(outcome)) + "\n";
+std::map<std::string, std::string> recorded_tables(const Experiment& experiment, const std::filesystem::path& folder) {
+  const std::string file = (folder / "run.json").string();
+  const auto rows = recorded_rows(file);
+  if (!rows) return {};
+  Outcome outcome;
+  outcome.experiment = experiment;
+  outcome.rows = *rows;
+  const nlohmann::json record = read_json(file);
+  try {
+    std::vector<NamedTable> all;
+    for (const nlohmann::json& table : record.at("tables")) {
+      const std::string name = table.at("file");
+      all.push_back({name, table.at("title"), name == rows_file ? summary(outcome) : read_table(folder / name)});
+    }
+    return table_files(outcome, all, record);
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(fmt::format("{}: not a record of this version: {}", file, error.what()));
   }
-  if (!e.speed_ups.empty()) out += "## Equal error, equal time\n\n" + markdown(equal_error_and_time(outcome)) + "\n";
-  if (const auto lines = orders_of(outcome); lines.size() > 1)
-    out += "## Orders\n\nOf the fall of the error from each setting to the next.\n\n" + markdown(lines) + "\n";
-  for (const PlotFile& plot : plots) out += fmt::format("![{}]({})\n", plot.title, plot.file);
-  if (!plots.empty()) out += "\n";
-  if (!outcome.gates.empty()) {
-    out += "## Gates\n\n";
-    for (const GateResult& gate : outcome.gates) out += fmt::format("- {}: {}\n", word(gate), gate.text);
-    out += "\n";
-  }
-  const Machine machine = this_machine();
-  out += "## Conditions\n\n";
-  if (const std::string warning = load_warning(outcome); !warning.empty()) out += fmt::format("- **{}.**\n", warning);
-  for (const ReferenceInfo& r : outcome.references)
-    out += fmt::format("- Reference of {}: `{}`, `{}`{}, {} once{}.\n", r.scene, r.renderer, r.settings,
-                       r.samples.empty() ? "" : ", " + r.samples + " samples per pixel", duration(r.seconds),
-                       r.committed.empty() ? ""
-                                           : fmt::format("; read from the committed film `{}`, made by {}: {}",
-                                                         r.committed, r.program, r.kept));
-  std::set<std::string> devices;
-  for (const Row& row : outcome.rows)
-    if (!row.device.empty()) devices.insert(row.device);
-  for (const std::string& device : devices) out += fmt::format("- Device: {}.\n", device);
-  out += fmt::format("- {}\n", e.kind->conditions());
-  if (any(outcome, [](const Row& r) { return download(r).has_value(); }))
-    out +=
-        "- A device's render ends when the frame is complete there, and no layer is read back; download: what reading back "
-        "all layers adds.\n";
-  if (any(outcome, [](const Row& r) { return r.runs > 0; }))
-    out += "- front: no other row of the scene is both faster and closer in the first metric, beyond the intervals.\n";
-  out += fmt::format("- Profile {}; {}, {} threads used of {}; airlight {} ({}).\n", e.profile, machine.cpu,
-                     e.timing.threads ? e.timing.threads : machine.threads, machine.threads, version(), commit());
-  return out;
 }
 
 }  // namespace airlight::experiments

@@ -64,7 +64,7 @@ def entries(text):
             elif not line.startswith("|--") and not (first and "verdict" in head):  # failing claims are in their paper's table, too
                 named = [(name[0].upper() + name[1:], cell) for name, cell in zip(head, row)][first + 1:]
                 parts = [f"{name}: {cell}" for name, cell in named if cell not in ("", "-")]
-                found.append(Entry(chapter, row[first], "\n".join(parts), dict(zip(head, row)).get("verdict", "")))
+                found.append(Entry(chapter, row[first], "\n".join(parts), dict(zip(head, row)).get("verdict", "").removesuffix(" †")))
                 if first and found[-1].names:
                     found[-1].chapter = found[-1].names[0].split("/")[0]
         else:

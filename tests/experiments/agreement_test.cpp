@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "experiments/application/json_value.h"
 #include "experiments/application/probes.h"
 #include "experiments/driver/kind.h"
 #include "experiments/driver/tables.h"
@@ -148,7 +149,7 @@ TEST_CASE("a record is read back as the rows that it is of", "[agreement]") {
   outcome.rows[1].seconds = {2, 1, 3};
   outcome.rows[1].runs = 3;
   const airlight::TemporaryFolder folder;
-  folder.write("g/e/run.json", run_record(outcome, {}));
+  folder.write("g/e/run.json", run_record(outcome, {}, {}).dump());
   const auto a = agreement_with(folder.path(), outcome);
   REQUIRE(a);
   CHECK(text(*a, "t") == "agrees with t: 2 of 2 figures; times 1 times as long (1 to 1)");

@@ -104,7 +104,9 @@ TEST_CASE("an experiment leaves its table, plots, pictures and record", "[driver
   CHECK_THAT(read_bytes((results / "table.md").string()),
              Catch::Contains("| marcher | 64 |") && Catch::Contains("FAILED"));
   CHECK_THAT(read_bytes((results / "expected.csv").string()), Catch::Contains(" at 16x12, "));
-  CHECK_THAT(read_bytes((results / "table.csv").string()), Catch::StartsWith("scene,parameter,method,setting"));
+  CHECK_THAT(read_bytes((results / "table.csv").string()), Catch::StartsWith("scene,parameter,method,setting") &&
+                                                               Catch::Contains(",layer,film,profile,rel_l2,") &&
+                                                               Catch::Contains(",16x12,quick,"));
 }
 
 TEST_CASE("a run that was killed goes on where it was", "[driver]") {

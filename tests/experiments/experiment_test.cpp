@@ -198,6 +198,9 @@ TEST_CASE("a claim of a paper needs a verdict from the list and what makes it tr
              Contains("e.toml:32:9") && Contains("a folder of experiments/"));
   const std::string erratum = good + "[[erratum]]\nwhere = \"Eq. 1\"\nprinted = \"1\"\nright = \"2\"\n";
   CHECK_THAT(failure(erratum + "proof = \"{one|marcher}\"\n"), Contains("no failure"));
+  const std::string conclusion = good + "[conclusion]\ntext = \"It is right.\"\n";
+  CHECK_THAT(failure(conclusion + holds), Contains("no failure"));
+  CHECK_THAT(failure(conclusion), Contains("e.toml:26:1") && Contains("holds"));
   CHECK_THAT(failure(erratum), Contains("e.toml:26:1") && Contains("proof"));
 }
 

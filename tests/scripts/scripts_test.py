@@ -238,6 +238,22 @@ class Claims(FiguresTree):
         self.assertIn("claim 1: results/g/e/table.csv has no row two|S|8 with a number in rel_l2: the page is left as it is", text)
         self.assertEqual(self.read("results/README.md"), page)
 
+    def test_a_verdict_with_a_time_of_a_disturbed_run(self):
+        for warning, sign in (("", ""), ("Times are disturbed: in 1 of 2 timed rows", " †")):
+            self.write("results/g/e/run.json", json.dumps({"machine": {"load_warning": warning, "threads": 2}}))
+            self.assertEqual(self.run_script("figures")[0], 0)
+            page = self.read("results/README.md")
+            self.assertIn(f"| 50 % off | 0.031 % off in 4.0 ms | holds only where it is large{sign} | [e](g/e) |\n", page)
+            self.assertIn("| fast | - | - | not comparable: other hardware | [e](g/e)", page)  # it quotes no time
+            self.assertIn("| G | 0 | 0 | 1 | 0 | 1 |\n", page)
+
+    def test_a_conclusion(self):
+        conclusion = '[conclusion]\ntext = "It is large."\nholds = "[two|S|8] > 0.4"\n'
+        self.write("experiments/g/e.toml", CLAIMS + conclusion)
+        self.assertEqual(self.run_script("figures", "--check")[0], 0)
+        self.write("experiments/g/e.toml", CLAIMS + conclusion.replace("> 0.4", "> 0.6"))
+        self.objects("experiments/g/e.toml: conclusion: 'It is large.' does not hold: [two|S|8] > 0.6")
+
     def test_a_row_that_is_gone(self):
         self.write("experiments/g/e.toml", CLAIMS.replace("{two|S|8; %}", "{three|S; %}"))
         self.objects("experiments/g/e.toml: claim 1: results/g/e/table.csv has no row three|S")
