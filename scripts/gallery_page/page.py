@@ -53,7 +53,10 @@ def film_line(picture, record):
     """The film that was rendered, and the processor that took the times."""
     s, width, height = picture["shrink"], picture["width"], picture["height"]
     film = f"Film: {film_text(picture)} pixels" + (f", each pixel of a panel ({width}x{height}) is the mean of {s}x{s}" if s > 1 else "")
-    return film + (f". Processor: {record['processor']}.\n\n" if record else ".\n\n")
+    if not record:
+        return f"{film}. The picture holds no errors and times: an earlier script drew it.\n\n"
+    timed = any(frame["seconds"] for row in record["panels"] for frame in row)
+    return f"{film}. " + (f"Processor: {record['processor']}.\n\n" if timed else "Times were not measured yet.\n\n")
 
 
 def page_of(pictures, records, once):
