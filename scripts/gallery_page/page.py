@@ -54,9 +54,9 @@ def film_line(picture, record):
     s, width, height = picture["shrink"], picture["width"], picture["height"]
     film = f"Film: {film_text(picture)} pixels" + (f", each pixel of a panel ({width}x{height}) is the mean of {s}x{s}" if s > 1 else "")
     if not record:
-        return f"{film}. The picture holds no errors and times: an earlier script drew it.\n\n"
+        return f"{film}. The picture holds no errors and times: an earlier script drew it.\n"
     timed = any(frame["seconds"] for row in record["panels"] for frame in row)
-    return f"{film}. " + (f"Processor: {record['processor']}.\n\n" if timed else "Times were not measured yet.\n\n")
+    return f"{film}. " + (f"Processor: {record['processor']}.\n" if timed else "Times were not measured yet.\n")
 
 
 def page_of(pictures, records, once):
