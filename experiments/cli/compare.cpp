@@ -21,6 +21,7 @@ namespace {
 struct CompareOptions {
   std::string image, reference, scene, map;
   double map_top = 1;
+  int map_shrink = 1;
   std::string layer = "mean";
   std::vector<std::string> metrics;
   Pairs most;        // metric=bound
@@ -75,7 +76,7 @@ int compare(const CompareOptions& options) {
     if (std::find(names.begin(), names.end(), metric) == names.end()) names.push_back(metric);
 
   if (!options.map.empty()) {
-    scene::write_png(options.map, error_map(image, reference, options.layer, options.map_top));
+    scene::write_png(options.map, error_map(image, reference, options.layer, options.map_top, options.map_shrink));
     fmt::print("{}: error over the reference's mean, 0 (violet) to {:g} (yellow)\n", options.map, options.map_top);
   }
   int code = 0;
@@ -113,6 +114,9 @@ void add_compare(Commands& commands) {
   c->add_option("--map", options->map,
                 "write this PNG: |difference| over the reference's mean luminance, in false colours");
   c->add_option("--map-top", options->map_top, "error that --map shows in yellow (default 1)");
+  c->add_option("--map-shrink", options->map_shrink,
+                "average the error over N x N pixels for each pixel of --map (default 1)")
+      ->check(CLI::Range(1, 64));
   add_pairs(c, "--override", options->overrides, "the same changes of the scene file as in the render");
   add_pairs(c, "--max", options->most,
             "bound on a metric, e.g. rel_l2=0.05: exit 1 if the whole 95 % interval lies above it");
@@ -124,6 +128,7 @@ void add_compare(Commands& commands) {
       throw Error(fmt::format("--equal {}: expected a rate above 0 and below 1", options->alpha));
     if (!options->map.empty()) require_output(options->map, ".png");
     if (c->count("--map-top") && options->map.empty()) throw Error("--map-top: expected --map, whose range it is");
+    if (c->count("--map-shrink") && options->map.empty()) throw Error("--map-shrink: expected --map, whose size it is");
     if (!(options->map_top > 0 && std::isfinite(options->map_top)))
       throw Error(fmt::format("--map-top {}: expected a number above 0", options->map_top));
     require(options->image, "IMAGE");

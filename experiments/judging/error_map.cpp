@@ -35,20 +35,27 @@ Rgb colour(double share) {
 
 }  // namespace
 
-scene::Film error_map(const scene::Film& image, const scene::Film& reference, const std::string& layer, double top) {
+scene::Film error_map(const scene::Film& image, const scene::Film& reference, const std::string& layer, double top,
+                      int shrink) {
   if (image.width != reference.width || image.height != reference.height)
     throw Error(fmt::format("the image is {}x{}, and the reference {}x{}", image.width, image.height, reference.width,
                             reference.height));
+  if (image.width % shrink != 0 || image.height % shrink != 0)
+    throw Error(fmt::format("--map-shrink {}: expected a number that divides the film's size {}x{}", shrink,
+                            image.width, image.height));
   image.layer(layer);  // throws where it is missing
   double mean = 0;
   for (int y = 0; y < reference.height; ++y)
     for (int x = 0; x < reference.width; ++x) mean += luminance(reference.get(layer, x, y));
   mean /= double(reference.pixels());
-  scene::Film map(reference.width, reference.height);
+  scene::Film map(reference.width / shrink, reference.height / shrink);
   map.add("mean");
   for (int y = 0; y < map.height; ++y)
     for (int x = 0; x < map.width; ++x) {
-      const double error = std::abs(luminance(image.get(layer, x, y) - reference.get(layer, x, y)));
+      double error = 0;
+      for (int j = y * shrink; j < (y + 1) * shrink; ++j)
+        for (int i = x * shrink; i < (x + 1) * shrink; ++i)
+          error += std::abs(luminance(image.get(layer, i, j) - reference.get(layer, i, j))) / (shrink * shrink);
       map.set("mean", x, y, colour(error == 0 ? 0 : error / (mean * top)));
     }
   return map;

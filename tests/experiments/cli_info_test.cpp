@@ -105,6 +105,19 @@ TEST_CASE("compare draws where two pictures differ", "[cli]") {
   CHECK(srgb(map.rgb[2]) == Approx(84).margin(0.6));
   CHECK(srgb(map.rgb[3 * 7]) == Approx(253).margin(0.6));
   CHECK(srgb(map.rgb[3 * 7 + 2]) == Approx(37).margin(0.6));
+  // One wrong column in two: the mean error over 2 x 2 pixels is half the range, (33, 144, 141).
+  for (int y = 0; y < 4; ++y)
+    for (int x = 0; x < 8; ++x) image.set("mean", x, y, Rgb::Constant(x % 2 ? 0.5 : 1.5));
+  write_exr(folder.file("stripes.exr"), image);
+  REQUIRE(run("compare stripes.exr b.exr --metric rel_l2 --map small.png --map-top 2 --map-shrink 2", folder).code ==
+          0);
+  const scene::ColorImage small = scene::read_color_image(folder.file("small.png"));
+  REQUIRE((small.width == 4 && small.height == 2));
+  CHECK(srgb(small.rgb[0]) == Approx(33).margin(0.6));
+  CHECK(srgb(small.rgb[1]) == Approx(144).margin(0.6));
+  CHECK_THAT(run("compare a.exr b.exr --map map.png --map-shrink 3", folder).err,
+             Contains("divides the film's size 8x4"));
+  CHECK(run("compare a.exr b.exr --map-shrink 2", folder).code == 2);
   CHECK(run("compare a.exr b.exr --map-top 2", folder).code == 2);
   CHECK(run("compare a.exr b.exr --map map.png --map-top 0", folder).code == 2);
   REQUIRE(run("convert a.exr plain.png b.exr grey.png --tone agx", folder).code == 0);

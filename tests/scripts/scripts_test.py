@@ -4,6 +4,7 @@ import importlib.machinery
 import importlib.util
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -70,6 +71,7 @@ class Tree(unittest.TestCase):
         for script in ("figures", "tighten", "gallery"):
             os.makedirs(f"{self.root}/scripts", exist_ok=True)
             shutil.copy(next(f for f in (f"{SCRIPTS}/{script}", f"{SOURCE}/scripts/{script}") if os.path.exists(f)), f"{self.root}/scripts")
+        shutil.copytree(f"{SOURCE}/scripts/gallery_page", f"{self.root}/scripts/gallery_page")
 
     def write(self, name, text):
         os.makedirs(os.path.dirname(f"{self.root}/{name}"), exist_ok=True)
@@ -359,7 +361,6 @@ name = "one"
 title = "One"
 caption = "a picture"
 exposure = 0
-width = 320
 height = 2
 [[picture.scene]]
 file = "scenes/a.toml"
@@ -371,18 +372,30 @@ label = "ours"
 method = "fast"
 settings = { K = 3 }
 """
-# In place of the program: writes down what it is asked for, and pictures of 640x4 pixels, 0 and 1 in turns.
+# In place of the program: writes down what it is asked for, and pictures of 960x4 pixels, 0 and 1 in turns. A frame takes as many seconds as
+# the file "seconds" said when it was rendered; without the file 0.5.
 PROGRAM = """#!/usr/bin/env python3
-import array, os, sys
-with open(os.path.dirname(os.path.abspath(__file__)) + "/log", "a") as log:
+import array, os, struct, sys, zlib
+here = os.path.dirname(os.path.abspath(__file__))
+with open(here + "/log", "a") as log:
     log.write(" ".join(sys.argv[1:]) + "\\n")
 if sys.argv[1] == "render":
-    open(sys.argv[sys.argv.index("--out") + 1], "w").close()
+    seconds = open(here + "/seconds").read() if os.path.exists(here + "/seconds") else "0.5"
+    open(sys.argv[sys.argv.index("--out") + 1], "w").write(seconds)
+elif sys.argv[1] == "info":
+    print("  seconds =", open(sys.argv[2]).read())
+elif sys.argv[1] == "doctor":
+    print("  processor  A Processor, 2 threads")
 elif sys.argv[1] == "compare":
-    print("rel_l2                   0.25")
+    print("rel_l2                   0.25 [0.24, 0.26]  (floor 0.004)")
+    if "--map" in sys.argv:
+        chunk = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+        with open(sys.argv[sys.argv.index("--map") + 1], "wb") as png:
+            png.write(b"\\x89PNG\\r\\n\\x1a\\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 480, 2, 8, 2, 0, 0, 0)))
+            png.write(chunk(b"IDAT", zlib.compress((b"\\0" + bytes([253, 231, 37]) * 480) * 2)) + chunk(b"IEND", b""))
 else:
     with open(sys.argv[3], "wb") as pfm:
-        pfm.write(b"PF\\n640 4\\n-1.0\\n" + array.array("f", [0, 0, 0, 1, 1, 1] * 1280).tobytes())
+        pfm.write(b"PF\\n960 4\\n-1.0\\n" + array.array("f", [0, 0, 0, 1, 1, 1] * 1920).tobytes())
 """
 
 
@@ -404,7 +417,7 @@ class Gallery(Tree):
         self.assertEqual(code, 0, text)
         self.assertEqual(self.run_script("gallery", "--check"), (0, "1 pictures, 0 faults\n"))
         self.assertEqual([r[r.index("--method") + 1] for r in self.renders()], ["exact", "fast"])
-        self.assertIn("film.width=640", self.renders()[0])
+        self.assertIn("film.width=960", self.renders()[0])
         self.assertEqual(self.run_script("gallery")[0], 0)
         self.assertEqual(len(self.renders()), 2)
         self.write("experiments/gallery.toml", GALLERY.replace("K = 3", "K = 4"))
@@ -420,13 +433,71 @@ class Gallery(Tree):
         self.objects(1, "or other scenes", "--check")
 
     def test_panels_are_means_over_pixels(self):
-        loader = importlib.machinery.SourceFileLoader("gallery", f"{self.root}/scripts/gallery")
-        gallery = importlib.util.module_from_spec(importlib.util.spec_from_loader("gallery", loader))
-        sys.dont_write_bytecode = True
-        loader.exec_module(gallery)
+        picture = self.module("picture", "scripts/gallery_page/picture.py")
+        pfm = f"{self.root}/x.pfm"
+        subprocess.run([f"{self.root}/build/release/airlight", "convert", "x.exr", pfm], check=True)
         # The mean of two zeros and two ones is 0.5, in sRGB 1.055 * 0.5^(1/2.4) - 0.055 = 0.7354, of 255: 187.5.
-        self.assertEqual(gallery.shown("x.exr", "mean", 2, 0, self.root), bytes([188]) * (320 * 2 * 3))
-        self.assertEqual(gallery.shown("x.exr", "mean", 2, 1, self.root), bytes([255]) * (320 * 2 * 3))
+        self.assertEqual(picture.shown(pfm, 2, 0), bytes([188]) * (480 * 2 * 3))
+        self.assertEqual(picture.shown(pfm, 2, 1), bytes([255]) * (480 * 2 * 3))
+
+    def module(self, name, file):
+        loader = importlib.machinery.SourceFileLoader(name, f"{self.root}/{file}")
+        module = importlib.util.module_from_spec(importlib.util.spec_from_loader(name, loader))
+        sys.dont_write_bytecode = True
+        loader.exec_module(module)
+        return module
+
+    def test_maps_stand_below_the_methods(self):
+        self.assertEqual(self.run_script("gallery")[0], 0)
+        log = self.read("build/release/log")
+        self.assertIn("--map-top 1.0 --map-shrink 2", log)  # the first of 1, 2, 5 times a power of ten from 3 times the error on
+        self.assertEqual(log.count("--map "), 1)  # none of the reference
+        height = self.height()
+        self.write("experiments/gallery.toml", GALLERY.replace("height = 2", "height = 2\nmaps = false"))
+        self.assertEqual(self.run_script("gallery")[0], 0)
+        self.assertEqual(self.read("build/release/log").count("--map "), 1)
+        self.assertEqual(height - self.height(), 24 + 80)  # a line of text, and the scale, which is higher than the map
+
+    def height(self):
+        with open(f"{self.root}/results/gallery/one.png", "rb") as stream:
+            return int.from_bytes(stream.read(24)[20:], "big")
+
+    def test_colours_are_those_of_the_program(self):
+        with open(f"{SOURCE}/experiments/judging/error_map.cpp") as stream:
+            listed = re.findall(r"\{(\d+), (\d+), (\d+)\}", stream.read())
+        self.assertEqual(self.module("picture", "scripts/gallery_page/picture.py").VIRIDIS, [tuple(map(int, colour)) for colour in listed])
+
+    def test_times(self):
+        gallery = self.module("gallery", "scripts/gallery")
+        gallery.disturbed = lambda before, after: False  # other tests run beside this one
+        self.write("build/release/seconds", "12")
+        row = "| {} | {} | once | {} | {} | {} |\n"
+        reference = row.format("truth", "exact", "defaults", "reference, noise 0.4 %", "12 s *")
+        self.assertEqual(gallery.main([]), 0)
+        self.assertIn(reference + row.format("ours", "fast", "K = 3", "25 %", "12 s *"), self.read("results/gallery/README.md"))
+        self.assertEqual(gallery.main(["--times"]), 0)
+        self.assertEqual(len(self.renders()), 2)  # frames of 12 s are timed once
+        self.write("experiments/gallery.toml", GALLERY.replace("K = 3", "K = 4"))
+        self.write("build/release/seconds", "0.5")
+        self.assertEqual(gallery.main([]), 0)
+        self.assertIn(reference + row.format("ours", "fast", "K = 4", "25 %", "500 ms *"), self.read("results/gallery/README.md"))
+        self.assertEqual(gallery.main(["--times"]), 0)
+        self.assertEqual(len(self.renders()), 6)  # three of the second panel
+        page = self.read("results/gallery/README.md")
+        self.assertIn(row.format("ours", "fast", "K = 4", "25 %", "500 ms"), page)
+        self.assertIn("Film: 960x4 pixels, each pixel of a panel (480x2) is the mean of 2x2. Processor: A Processor, 2 threads.", page)
+        os.remove(f"{self.root}/build/release/airlight")  # the page comes from the picture alone
+        self.assertEqual(self.run_script("gallery", "--page")[0], 0)
+        self.assertEqual(self.read("results/gallery/README.md"), page)
+        self.assertEqual(self.run_script("gallery", "--check")[0], 0)
+
+    def test_no_times_of_a_busy_machine(self):
+        gallery = self.module("gallery", "scripts/gallery")
+        self.assertFalse(gallery.disturbed((1, 10, 100), (3, 12.1, 102)))  # others used 0.1 s of 2 s
+        self.assertTrue(gallery.disturbed((1, 10, 100), (2, 12, 102)))
+        gallery.disturbed = lambda before, after: True
+        self.assertEqual(gallery.main(["--times"]), 0)
+        self.assertIn("| ours | fast | once | K = 3 | 25 % |  |\n", self.read("results/gallery/README.md"))
 
     def objects(self, code, word, *command):
         got, text = self.run_script("gallery", *command)
@@ -438,9 +509,10 @@ class Gallery(Tree):
         for old, new, word in (
                 ("exposure = 0", "exposur = 0", "gallery.toml:5: unknown key 'exposur' of a picture (nearest: exposure)"),
                 ("exposure = 0", "exposure = '0'", "gallery.toml:5: 'exposure' of a picture is '0', expected a number"),
-                ("K = 3 }", "K = 3 }\nmetod = 'x'", "gallery.toml:17: unknown key 'metod' of a panel (nearest: method)"),
+                ("K = 3 }", "K = 3 }\nmetod = 'x'", "gallery.toml:16: unknown key 'metod' of a panel (nearest: method)"),
                 ("caption = \"a picture\"\n", "", "gallery.toml:1: a picture has no 'caption'"),
                 ("height = 2", "height = 0", "gallery.toml:1: 'height' is 0, expected 1 to 1024"),
+                ("height = 2", "height = 2\nwidth = 0", "gallery.toml:1: 'width' is 0, expected 1 to 1024"),
                 ("title = ", "title ", "experiments/gallery.toml: Expected '='")):
             self.write("experiments/gallery.toml", GALLERY.replace(old, new))
             self.assertEqual(self.objects(2, word, "--check").count("\n"), 1)

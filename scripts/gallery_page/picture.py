@@ -1,0 +1,139 @@
+"""Draws a picture of the gallery: panels, labels, error maps and their scale, by gnuplot; and texts in PNG files."""
+import array
+import struct
+import subprocess
+import textwrap
+import zlib
+
+# Colours of the error maps at equal distances, as in experiments/judging/error_map.cpp.
+VIRIDIS = [(68, 1, 84), (71, 44, 122), (59, 81, 139), (44, 113, 142), (33, 144, 141), (39, 173, 129), (92, 200, 99), (170, 220, 50),
+           (253, 231, 37)]
+
+
+def chunks(png):
+    """Type and content of each chunk."""
+    at = 8
+    while at < len(png):
+        size = struct.unpack(">I", png[at:at + 4])[0]
+        yield png[at + 4:at + 8], png[at + 8:at + 8 + size]
+        at += size + 12
+
+
+def with_texts(png, texts):
+    """The PNG with these texts behind its header, in place of any that were there."""
+    kept = [(kind, content) for kind, content in chunks(png) if kind != b"tEXt"]
+    kept[1:1] = [(b"tEXt", name + b"\0" + text) for name, text in texts.items()]
+    return png[:8] + b"".join(struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
+                              for kind, content in kept)
+
+
+def read_pfm(path):
+    with open(path, "rb") as stream:
+        stream.readline()
+        width, height = map(int, stream.readline().split())
+        stream.readline()
+        values = array.array("f", stream.read())
+    return width, height, values
+
+
+SRGB = bytes(round(255 * (12.92 * v if v <= 0.0031308 else 1.055 * v ** (1 / 2.4) - 0.055)) for v in (i / 65535 for i in range(65536)))
+
+
+def shown(pfm, shrink, exposure):
+    """8-bit sRGB of the panel, row 0 at the bottom: means over shrink x shrink pixels, times 2^exposure."""
+    width, height, values = read_pfm(pfm)
+    scale, pixels, row = 65535 * 2.0**exposure / shrink**2, bytearray(), 3 * width
+    for y in range(0, height, shrink):
+        line = [sum(column) for column in zip(*(values[(y + i) * row:(y + i + 1) * row] for i in range(shrink)))]
+        colours = bytearray(row // shrink)
+        for c in range(3):
+            sums = (sum(part) for part in zip(*(line[3 * i + c::3 * shrink] for i in range(shrink))))
+            colours[c::3] = bytes(SRGB[int(min(max(v * scale, 0.0), 65535.0) + 0.5)] for v in sums)
+        pixels += colours
+    return bytes(pixels)
+
+
+def quoted(text):
+    return text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
+
+
+def ramp(width, height):
+    """Pixels of the scale bar: viridis from left to right."""
+    row = bytearray()
+    for x in range(width):
+        at = x / (width - 1) * (len(VIRIDIS) - 1)
+        i = min(int(at), len(VIRIDIS) - 2)
+        row += bytes(round(a + (b - a) * (at - i)) for a, b in zip(VIRIDIS[i], VIRIDIS[i + 1]))
+    return bytes(row) * height
+
+
+class Canvas:
+    """Commands for gnuplot that draw images and texts at pixels, from the left and from the top."""
+
+    def __init__(self, width, height, out, folder):
+        self.width, self.height, self.folder, self.labels = width, height, folder, 0
+        self.lines = [f'set terminal pngcairo size {width},{height} font "Sans,11" background "#ffffff"', f'set output "{out}"',
+                      "set multiplot", "unset key", "unset tics", "unset border", "unset colorbox"]
+
+    def text(self, x, y, text, size=11, colour="#000000", align="left"):
+        self.labels += 1
+        self.lines.append(f'set label {self.labels} "{quoted(text)}" at screen {x / self.width},{1 - y / self.height} {align} noenhanced '
+                          f'font "Sans,{size}" tc rgb "{colour}"')
+
+    def image(self, left, top, w, h, source):
+        """An image of w x h pixels: a PNG file, or the bytes of its pixels, row 0 at the bottom. It draws the texts before it, too."""
+        if isinstance(source, bytes):
+            file = f"{self.folder}/image{len(self.lines)}.rgb"
+            with open(file, "wb") as stream:
+                stream.write(source)
+            data = f'"{file}" binary array=({w},{h}) format="%uchar%uchar%uchar"'
+        else:
+            data = f'"{source}" binary filetype=png'
+        self.lines += [f"set lmargin at screen {left / self.width}", f"set rmargin at screen {(left + w) / self.width}",
+                       f"set tmargin at screen {1 - top / self.height}", f"set bmargin at screen {1 - (top + h) / self.height}",
+                       f"plot [-0.5:{w - 0.5}] [-0.5:{h - 0.5}] {data} using 1:2:3 with rgbimage", "unset label"]
+        self.labels = 0
+
+    def draw(self):
+        subprocess.run(["gnuplot"], input="\n".join(self.lines) + "\n", text=True, check=True)
+
+
+SCALE_HEIGHT = 80  # pixels below the line "error map"
+
+
+def draw_scale(canvas, left, top, width, map_top):
+    """The scale of the error maps, in the space below a reference."""
+    canvas.text(left + 2, top + 24, "Error maps below the methods: difference in luminance from the\n"
+                                    "reference, divided by the reference's mean luminance", 10, "#444444")
+    for share, align in ((0, "left"), (0.5, "center"), (1, "right")):
+        text = f"{100 * share * map_top:g} %" + (" and more" if share == 1 else "")
+        canvas.text(left + 2 + share * (width - 4), top + 86, text, 10, "#444444", align)
+    canvas.image(left + 2, top + 58, width - 4, 16, ramp(width - 4, 16))
+
+
+def compose(picture, panels, columns, note, out, folder):
+    """The panels in rows, labels over them, maps of their errors below, by gnuplot."""
+    w, h, gap, head, map_head = picture["width"], picture["height"], 4, 44, 24
+    width = columns * (w + gap) + gap
+    caption = [line for text in (picture["caption"], note) for line in textwrap.wrap(text, width // 8)]
+    rows = [panels[i:i + columns] for i in range(0, len(panels), columns)]
+    tops, height = [], 32 + 19 * len(caption)
+    for row in rows:
+        tops.append(height)
+        height += head + h + (map_head + max(h, SCALE_HEIGHT) if any(p["map"] for p in row) else 0)
+    canvas = Canvas(width, height + gap, out, folder)
+    canvas.text(gap + 2, 16, picture["title"], 13)
+    for i, line in enumerate(caption):
+        canvas.text(gap + 2, 40 + 19 * i, line, 11, "#444444")
+    for row, top in zip(rows, tops):
+        for i, panel in enumerate(row):
+            left = gap + i * (w + gap)
+            canvas.text(left + 2, top + 14, panel["label"])
+            canvas.text(left + 2, top + 32, panel["second"], 10, "#444444")
+            canvas.image(left, top + head, w, h, panel["pixels"])
+            if panel["map"]:
+                canvas.text(left + 2, top + head + h + 13, "error map", 10, "#444444")
+                canvas.image(left, top + head + h + map_head, w, h, panel["map"])
+            elif panel["scale"] and any(p["map"] for p in row):
+                draw_scale(canvas, left, top + head + h, w, panel["scale"])
+    canvas.draw()
