@@ -31,8 +31,8 @@ struct SceneOnDevice {
   std::unique_ptr<ray_marcher::Picture> picture;  // null: nothing is to be seen
 
   SceneOnDevice(Context& context, std::shared_ptr<const Scene> scene, const Options& options,
-                ray_marcher::GridStorage storage, Frame& frame, const Execution& execution)
-      : plan(make_plan(std::move(scene), options.media)), ends(context, *plan.scene) {
+                ray_marcher::GridStorage storage, FirstHits::Way way, Frame& frame, const Execution& execution)
+      : plan(make_plan(std::move(scene), options.media)), ends(context, *plan.scene, way) {
     const int lights = int(plan.lights.size());
     if (plan.layers.empty() && !ray_marcher::something_behind(*plan.scene, plan.lights.size())) return;
     lit =
@@ -115,9 +115,9 @@ void PreparedFogGpu::take(std::shared_ptr<const Scene> scene, const Execution& e
     volume_.reset();
   } else {
     volume_.reset();
-    scene_ =
-        std::make_unique<SceneOnDevice>(context_, std::move(scene), options_,
-                                        scene::read_settings(ray_marcher::bind_storage, given_), frame_, execution);
+    scene_ = std::make_unique<SceneOnDevice>(context_, std::move(scene), options_,
+                                             scene::read_settings(ray_marcher::bind_storage, given_),
+                                             scene::read_settings(FirstHits::bind, given_), frame_, execution);
   }
   if (next && options_.reproject) {
     ++pictures_;
@@ -229,6 +229,7 @@ std::string FroxelFog::about() const {
 std::vector<scene::SettingSpec> FroxelFog::settings() const {
   auto settings = airlight::froxel_fog::option_specs();
   settings.push_back(scene::list_settings(ray_marcher::bind_storage).front());
+  settings.push_back(scene::list_settings(FirstHits::bind).front());
   return settings;
 }
 

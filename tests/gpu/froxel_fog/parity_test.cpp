@@ -121,6 +121,15 @@ DEVICE_TEST_CASE("froxel fog: what ends rays on the GPU", "[gpu][froxel_fog]") {
       if (auto* point = std::get_if<scene::PointLight>(&light)) point->radius = 0.05;
     agree(file, seen_by(changed, view_of(changed)), {{"tile", "4"}, {"jitter", "halton"}, {"frames", "4"}});
     agree(file, seen_by(changed, view_of(changed)), {{"preset", "hdrp"}, {"tile", "4"}});
+    // By the rasteriser, too, but for silhouettes; the rays of froxels go through the tree all the same.
+    Given given = small_maps({{"tile", "4"}, {"jitter", "halton"}, {"frames", "4"}});
+    const auto scene = seen_by(changed, view_of(changed));
+    const scene::Rendering tree = test::render(gpu::froxel_fog::FroxelFog(), scene, given);
+    given["first_hits"] = "raster";
+    const scene::Rendering raster = test::render(gpu::froxel_fog::FroxelFog(), scene, given);
+    CHECK(tree.counters.at("draws") == 0);
+    CHECK(raster.counters.at("draws") > 0);
+    gpu::test::agree(file, tree.film, raster.film, {4e-6}, {"mean", "airlight", "surface"});
   }
   // Cells' centres lie between the picture's pixels.
   auto behind = std::make_shared<scene::Scene>(*smoke(froxel_fog::wide_camera(), 32, 24));
