@@ -168,6 +168,10 @@ std::string Context::description() const {
                      software() ? "; a processor, no GPU" : "");
 }
 
+std::string Context::driver() const {
+  return fmt::format("{}, {}, OpenGL {}", attempt_.renderer, attempt_.vendor, attempt_.version);
+}
+
 bool Context::software() const { return attempt_.place.software; }
 
 void Context::check(const std::string& what) {

@@ -50,6 +50,8 @@ class Context {
   // One line: renderer, version, place.
   std::string description() const;
   const std::string& renderer() const { return attempt_.renderer; }
+  // Renderer, vendor and version of OpenGL, which contains the driver's: equal for equal devices with equal drivers.
+  std::string driver() const;
   bool software() const;  // llvmpipe and its like: its times are not those of a GPU
   const Limits& limits() const { return limits_; }
   const Gl& gl() const { return gl_; }

@@ -6,6 +6,7 @@
 
 #include <atomic>
 
+#include "scene/base/device_check.h"
 #include "scene/base/threads.h"
 
 namespace airlight::scene {
@@ -20,6 +21,7 @@ void Renderer::require_support(const Scene& scene, const Settings& settings) con
 std::unique_ptr<Prepared> Renderer::prepare(std::shared_ptr<const Scene> scene, const Settings& settings,
                                             const Execution& execution) const {
   require_support(*scene, settings);
+  check_device(*this);
   return prepare_supported(std::move(scene), settings, execution);
 }
 

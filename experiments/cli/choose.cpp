@@ -180,6 +180,7 @@ void add_choose(Commands& commands) {
   commands.add_limit(c);
   commands.add_data(c);
   commands.add_gpu(c);
+  commands.add_unchecked(c);
   commands.on(c, [options] {
     require(options->scene, "SCENE");
     return choose(*options);

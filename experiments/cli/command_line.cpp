@@ -60,6 +60,11 @@ void Commands::add_gpu(CLI::App* command) {
       ->type_name("WHICH");
 }
 
+void Commands::add_unchecked(CLI::App* command) {
+  command->add_flag("--unchecked", unchecked,
+                    "also use methods that `airlight doctor --check` found wrong on the graphics device");
+}
+
 void Commands::add_limit(CLI::App* command) {
   command
       ->add_option(

@@ -19,13 +19,15 @@ struct Commands {
   CLI::App app;
   std::string data;
   std::optional<std::string> gpu;
+  bool unchecked = false;
   std::vector<std::string> limits;
   std::function<int()> action;  // of the chosen command; returns the exit code
   bool lists_devices = false;   // the chosen command itself tells of a device that is not there
 
-  void add_data(CLI::App* command);   // --data
-  void add_gpu(CLI::App* command);    // --gpu
-  void add_limit(CLI::App* command);  // --limit
+  void add_data(CLI::App* command);       // --data
+  void add_gpu(CLI::App* command);        // --gpu
+  void add_unchecked(CLI::App* command);  // --unchecked
+  void add_limit(CLI::App* command);      // --limit
   void on(CLI::App* command, std::function<int()> act);
 };
 

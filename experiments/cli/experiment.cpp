@@ -321,6 +321,7 @@ void add_run(Commands& commands, CLI::App* c, ExperimentOptions& options) {
   commands.add_limit(c);
   commands.add_data(c);
   commands.add_gpu(c);
+  commands.add_unchecked(c);
 }
 
 }  // namespace

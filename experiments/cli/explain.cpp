@@ -7,6 +7,7 @@
 #include "experiments/cli/commands.h"
 #include "experiments/cli/scene_option.h"
 #include "gpu/context.h"
+#include "scene/base/device_check.h"
 #include "scene/base/error.h"
 #include "scene/scene.h"
 
@@ -71,7 +72,8 @@ void explain_renderer(const scene::Renderer& renderer, std::shared_ptr<const sce
 
 void explain_solver(const scene::Solver& solver, const scene::FlowProblem& flow, const Pairs& given) {
   const scene::Settings settings(solver.settings(), given, solver.name());
-  explain_component(solver, settings, solver.supports(flow, settings), "cannot solve this flow");
+  if (explain_component(solver, settings, solver.supports(flow, settings), "cannot solve this flow"))
+    scene::check_device(solver);
 }
 
 // One line for each: what it is, or the first reason why it cannot do what it is given.
@@ -83,6 +85,7 @@ void list(const Components& components, const Input& input, const std::string& w
     try {
       if (!c->device().empty()) gpu::Context::get();  // throws where there is none
       reasons = c->supports(input, scene::Settings(c->settings(), {}, c->name()));
+      if (reasons.empty()) scene::check_device(*c);
     } catch (const Unavailable& reason) {
       reasons.push_back(fmt::format("not available on this machine: {}", reason.what()));
     }
@@ -151,6 +154,7 @@ void add_explain(Commands& commands) {
   commands.add_limit(c);
   commands.add_data(c);
   commands.add_gpu(c);
+  commands.add_unchecked(c);
   commands.on(c, [options] {
     require(options->scene.file, "SCENE");
     return explain(*options);

@@ -14,9 +14,11 @@
 #include "experiments/application/studies.h"
 #include "experiments/cli/command_line.h"
 #include "experiments/cli/commands.h"
+#include "experiments/device/device_record.h"
 #include "gpu/context.h"
 #include "gpu/device_choice.h"
 #include "scene/base/data_folder.h"
+#include "scene/base/device_check.h"
 #include "scene/base/error.h"
 #include "scene/base/limits.h"
 
@@ -51,6 +53,7 @@ void apply_shared_options(const Commands& commands) {
   scene::reset_limits();
   for (const std::string& limit : commands.limits) scene::set_limit(limit);
   scene::on_long_work(say);
+  scene::set_device_check(commands.unchecked ? scene::DeviceCheck() : refuse_failed_method);
   if (!commands.gpu) return;
   gpu::Context::choose_device(*commands.gpu);
   // A device that is not there is told at once, whatever the command would make of it; doctor tells it in its table.

@@ -123,6 +123,7 @@ void add_render(Commands& commands) {
   commands.add_limit(c);
   commands.add_data(c);
   commands.add_gpu(c);
+  commands.add_unchecked(c);
   commands.on(c, [options] {
     require(options->scene.file, "SCENE");
     require(options->method, "--method");

@@ -116,6 +116,7 @@ void add_simulate(Commands& commands) {
   c->add_option("--profile", options->profile, "profile of --sequence: quick (default) or paper");
   c->add_option("--threads", options->threads, "number of threads (default 0: all)")->check(CLI::Range(0, 4096));
   commands.add_limit(c);
+  commands.add_unchecked(c);
   commands.add_data(c);
   commands.on(c, [options] {
     if (options->sequence.empty()) {

@@ -7,6 +7,7 @@
 
 #include "gpu/froxel_fog/volume.h"
 #include "gpu/ray_marcher/ray_ends.h"
+#include "reference/froxel_fog/doubt.h"
 #include "reference/froxel_fog/frames.h"
 #include "reference/froxel_fog/froxel_fog.h"
 #include "reference/froxel_fog/stages.h"
@@ -30,8 +31,8 @@ struct SceneOnDevice {
   std::unique_ptr<ray_marcher::Picture> picture;  // null: nothing is to be seen
 
   SceneOnDevice(Context& context, std::shared_ptr<const Scene> scene, const Options& options,
-                ray_marcher::GridStorage storage, Frame& frame, const Execution& execution)
-      : plan(make_plan(std::move(scene), options.media)), ends(context, *plan.scene) {
+                ray_marcher::GridStorage storage, FirstHits::Way way, Frame& frame, const Execution& execution)
+      : plan(make_plan(std::move(scene), options.media)), ends(context, *plan.scene, way) {
     const int lights = int(plan.lights.size());
     if (plan.layers.empty() && !ray_marcher::something_behind(*plan.scene, plan.lights.size())) return;
     lit =
@@ -81,6 +82,7 @@ class PreparedFogGpu final : public scene::Prepared {
   // Returns false if there were too few rounds: draw again with `looks`.
   bool draw(const View&, const Execution&, bool looks, scene::Rendering&) const;
   void count(const View&, scene::Rendering&) const;
+  void warn(const View&, scene::Film&) const;
 
   scene::Settings given_;
   Options options_;
@@ -95,11 +97,14 @@ class PreparedFogGpu final : public scene::Prepared {
   mutable bool drawn_ = false;      // was there one since the last next()?
   std::optional<Traffic> next_;     // of next(), if there was one
   std::unique_ptr<Volume> volume_;  // null: there are no media
+  mutable std::unique_ptr<const airlight::lit_media::LitMedia>
+      on_processor_;  // for the warning alone; null: not needed yet
 };
 
 void PreparedFogGpu::take(std::shared_ptr<const Scene> scene, const Execution& execution, bool next) {
   const Use use(context_);
   frame_.timer.restart();
+  on_processor_.reset();  // of the scene before
   if (scene_ && scene_->become(scene, options_, frame_, execution)) {
     // Without reproject the volume is that of the last picture.
     if (!options_.reproject) {
@@ -110,9 +115,9 @@ void PreparedFogGpu::take(std::shared_ptr<const Scene> scene, const Execution& e
     volume_.reset();
   } else {
     volume_.reset();
-    scene_ =
-        std::make_unique<SceneOnDevice>(context_, std::move(scene), options_,
-                                        scene::read_settings(ray_marcher::bind_storage, given_), frame_, execution);
+    scene_ = std::make_unique<SceneOnDevice>(context_, std::move(scene), options_,
+                                             scene::read_settings(ray_marcher::bind_storage, given_),
+                                             scene::read_settings(FirstHits::bind, given_), frame_, execution);
   }
   if (next && options_.reproject) {
     ++pictures_;
@@ -177,6 +182,16 @@ void PreparedFogGpu::count(const View& view, scene::Rendering& result) const {
       double(result.film.pixels()) + (any ? double(cells.columns) * cells.rows * options_.frames : 0);
 }
 
+// A picture that nobody reads needs no warning.
+void PreparedFogGpu::warn(const View& view, scene::Film& film) const {
+  const std::vector<float> range = frame_.download.values<float>("range");
+  if (!volume_ || range.empty() || range[2] == 0) return;
+  if (!on_processor_) on_processor_ = std::make_unique<airlight::lit_media::LitMedia>(scene_->plan);
+  const Interval slices{range[0], range[1]};
+  const std::string doubt = airlight::froxel_fog::doubt_of(*on_processor_, options_, slices, *scene_->plan.scene, view);
+  if (!doubt.empty()) film.metadata["warning"] = "froxel_fog_gpu: " + doubt;
+}
+
 scene::Rendering PreparedFogGpu::render(const View& view, const Execution& execution) const {
   require_own_camera(*scene_->plan.scene, view);
   scene::Rendering result{scene::Film(view.width, view.height), {}, {}};
@@ -192,6 +207,7 @@ scene::Rendering PreparedFogGpu::render(const View& view, const Execution& execu
   const Scene& scene = *scene_->plan.scene;
   result.film.metadata = {
       {"method", "froxel_fog_gpu"}, {"settings", settings_}, {"scene", scene.name}, {"hash", scene.hash}};
+  warn(view, result.film);
   return result;
 }
 
@@ -213,6 +229,7 @@ std::string FroxelFog::about() const {
 std::vector<scene::SettingSpec> FroxelFog::settings() const {
   auto settings = airlight::froxel_fog::option_specs();
   settings.push_back(scene::list_settings(ray_marcher::bind_storage).front());
+  settings.push_back(scene::list_settings(FirstHits::bind).front());
   return settings;
 }
 

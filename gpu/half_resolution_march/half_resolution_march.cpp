@@ -20,9 +20,11 @@ using scene::View;
 class PreparedHalfResolutionMarchGpu final : public scene::Prepared {
  public:
   PreparedHalfResolutionMarchGpu(std::shared_ptr<const Scene> scene, const Options& options,
-                                 ray_marcher::GridStorage storage, std::string settings, const Execution& execution)
+                                 ray_marcher::GridStorage storage, FirstHits::Way way, std::string settings,
+                                 const Execution& execution)
       : options_(options),
         storage_(storage),
+        way_(way),
         settings_(std::move(settings)),
         context_(Context::get()),
         frame_(context_) {
@@ -47,6 +49,7 @@ class PreparedHalfResolutionMarchGpu final : public scene::Prepared {
   std::shared_ptr<const Scene> scene_;
   Options options_;
   ray_marcher::GridStorage storage_;
+  FirstHits::Way way_;
   std::string settings_;
   Context& context_;
   mutable Frame frame_;
@@ -66,7 +69,7 @@ void PreparedHalfResolutionMarchGpu::prepare(std::shared_ptr<const Scene> scene,
   scene_ = std::move(scene);
   if (!passes_ || !passes_->become(scene_, frame_.timer, execution.progress)) {
     passes_.reset();
-    passes_ = std::make_unique<Passes>(context_, scene_, options_, storage_, frame_.timer, execution.progress);
+    passes_ = std::make_unique<Passes>(context_, scene_, options_, storage_, way_, frame_.timer, execution.progress);
   }
   on_processor_ = std::make_unique<airlight::lit_media::LitMedia>(passes_->media().plan());
   frame_.timer.stage("upload");
@@ -172,6 +175,7 @@ std::string HalfResolutionMarch::about() const {
 std::vector<scene::SettingSpec> HalfResolutionMarch::settings() const {
   auto settings = airlight::half_resolution_march::option_specs();
   settings.push_back(scene::list_settings(ray_marcher::bind_storage).front());
+  settings.push_back(scene::list_settings(FirstHits::bind).front());
   return settings;
 }
 
@@ -186,7 +190,8 @@ std::unique_ptr<scene::Prepared> HalfResolutionMarch::prepare_supported(std::sha
                                                                         const Execution& execution) const {
   return std::make_unique<PreparedHalfResolutionMarchGpu>(
       std::move(scene), airlight::half_resolution_march::read_options(settings),
-      scene::read_settings(ray_marcher::bind_storage, settings), settings.canonical(), execution);
+      scene::read_settings(ray_marcher::bind_storage, settings), scene::read_settings(FirstHits::bind, settings),
+      settings.canonical(), execution);
 }
 
 }  // namespace airlight::gpu::half_resolution_march

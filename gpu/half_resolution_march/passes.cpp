@@ -36,11 +36,12 @@ void set_projection(Program& p, int number, const scene::View& view, const Point
 }  // namespace
 
 Passes::Passes(Context& context, std::shared_ptr<const scene::Scene> scene, const Options& options,
-               ray_marcher::GridStorage storage, StageTimer& timer, const std::function<bool(double)>& progress)
+               ray_marcher::GridStorage storage, FirstHits::Way way, StageTimer& timer,
+               const std::function<bool(double)>& progress)
     : context_(context),
       options_(options),
       plan_(airlight::lit_media::make_plan(std::move(scene), options.media)),
-      ends_(context, *plan_.scene),
+      ends_(context, *plan_.scene, way),
       lit_(context, plan_, storage, ends_.surfaces(), timer, progress),
       picture_(context, *plan_.scene, lit_.media(), lit_.columns(), int(plan_.lights.size()), columns_,
                ends_.surfaces()),

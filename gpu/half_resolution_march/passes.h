@@ -21,8 +21,8 @@ class Passes {
  public:
   // Uploads, and makes the lights' maps: stages of the timer. Throws Unavailable where the device has no room, Interrupted if `progress`
   // says so.
-  Passes(Context&, std::shared_ptr<const scene::Scene>, const Options&, ray_marcher::GridStorage, StageTimer&,
-         const std::function<bool(double)>& progress);
+  Passes(Context&, std::shared_ptr<const scene::Scene>, const Options&, ray_marcher::GridStorage, FirstHits::Way,
+         StageTimer&, const std::function<bool(double)>& progress);
 
   // Becomes the passes of the next frame where programs and buffers serve it, and uploads what has changed. False, and nothing is done, where
   // they do not.

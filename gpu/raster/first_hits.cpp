@@ -30,19 +30,23 @@ void FirstHits::bind(scene::SettingBinder& b, Way& way) {
 
 FirstHits::FirstHits(Context& context, const scene::Scene& scene, bool with_balls, Way way)
     : context_(context), surfaces_(context, scene, with_balls), tree_(context, scene) {
-  if (way == Way::raster) {
+  if (way == Way::raster)
     raster_ = std::make_unique<RasterPass>(context);
-    return;
-  }
-  if (context.software()) {
+  else
+    require_program();
+}
+
+void FirstHits::require_program() const {
+  if (program_) return;
+  if (context_.software()) {
     if (surfaces_.solids().size() > most_solids)
       throw Unavailable(fmt::format("gpu: {} spheres and planes, {} takes {} at most", surfaces_.solids().size(),
-                                    context.renderer(), most_solids));
+                                    context_.renderer(), most_solids));
     dispatches_ = std::max(1, (most_leaves(tree_.nodes()) + leaves_at_once - 1) / leaves_at_once);
   }
-  program_ = &context.program("raster/first_hits.comp", {{"LOCAL_SIZE_X", std::to_string(pixel_tile)},
-                                                         {"LOCAL_SIZE_Y", std::to_string(pixel_tile)},
-                                                         {"RESUMES", dispatches_ > 1 ? "1" : "0"}});
+  program_ = &context_.program("raster/first_hits.comp", {{"LOCAL_SIZE_X", std::to_string(pixel_tile)},
+                                                          {"LOCAL_SIZE_Y", std::to_string(pixel_tile)},
+                                                          {"RESUMES", dispatches_ > 1 ? "1" : "0"}});
 }
 
 void FirstHits::find(const scene::View& view, const Buffer& distances, const Buffer* primitives,
@@ -59,7 +63,7 @@ void FirstHits::find(const scene::View& view, const Buffer& distances, const Buf
 }
 
 void FirstHits::find(const scene::View& view, const Buffer& distances, const CellGrid& grid) const {
-  if (raster_) throw Error("gpu: first hits by the rasteriser know no cells");
+  require_program();
   trace(view, distances, nullptr, grid);
 }
 

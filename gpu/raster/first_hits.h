@@ -6,7 +6,7 @@
 // first in the scene is taken.
 //
 // Way::raster, a raster pass (raster_pass.h): the rasteriser decides what a pixel shows, to 1/256 pixel at silhouettes;
-// where it is met is computed in double precision too.
+// where it is met is computed in double precision too. Rays through cells of another grid go through the tree.
 //
 // Either way surfaces are two-sided; there is no near plane, and no far one before 1e37 m.
 #pragma once
@@ -32,18 +32,19 @@ class FirstHits {
   // Row 0 first, x fastest: distances along the rays [m] as floats, far_away where nothing is hit, and, unless null,
   // primitives as ints: triangles in their order, then solids, then balls; -1: nothing. Throws Error if they do not fit.
   void find(const scene::View&, const Buffer& distances, const Buffer* primitives = nullptr, const HitGrid& = {}) const;
-  // Distances alone, for Way::tree.
+  // Distances alone, by the tree either way.
   void find(const scene::View&, const Buffer& distances, const CellGrid&) const;
 
  private:
+  void require_program() const;
   void trace(const scene::View&, const Buffer& distances, const Buffer* primitives, const CellGrid&) const;
 
   Context& context_;
   SurfacesOnDevice surfaces_;
   ShadowTree tree_;
   std::unique_ptr<RasterPass> raster_;  // null: by the tree
-  Program* program_ = nullptr;          // for the tree
-  int dispatches_ = 1;                  // that a ray may need, where the device limits loops
+  mutable Program* program_ = nullptr;  // for the tree; null: not needed yet
+  mutable int dispatches_ = 1;          // that a ray may need, where the device limits loops
   mutable std::unique_ptr<Buffer> unfinished_;
 };
 

@@ -6,10 +6,10 @@
 #include <optional>
 #include <utility>
 
+#include "reference/froxel_fog/doubt.h"
 #include "reference/froxel_fog/fit.h"
 #include "reference/froxel_fog/frames.h"
 #include "reference/froxel_fog/stages.h"
-#include "reference/lit_media/doubt.h"
 #include "scene/base/error.h"
 #include "scene/base/flush_subnormals.h"
 #include "scene/base/place_error.h"
@@ -76,9 +76,7 @@ class PreparedFog final : public scene::Prepared {
     std::optional<Volume> volume;
     Counters counters;
     if (!range.empty() && !lit_->layers().empty()) {
-      const double parameter = options_.depth == Distribution::log ? options_.log_c : options_.exponent;
-      volume.emplace(cells_of(options_, view.width, view.height),
-                     Slices(options_.slices, range, options_.depth, parameter));
+      volume.emplace(cells_of(options_, view.width, view.height), slices_of(options_, range));
       for (int frame = 0; frame < options_.frames; ++frame) {
         const Before before = history_ ? Before{float(options_.history_weight), &*history_}
                                        : Before{history_weight(options_, frame), nullptr};
@@ -96,7 +94,9 @@ class PreparedFog final : public scene::Prepared {
     }
     counters += draw(volume, view, parts.next(), result.film);
     book("picture");
-    if (volume) warn(*volume, view, result.film);
+    if (volume)
+      if (const std::string doubt = doubt_of(*lit_, options_, range, *scene_, view); !doubt.empty())
+        result.film.metadata["warning"] = "froxel_fog: " + doubt;
     const double froxels = volume ? count_froxels(options_, view.width, view.height) : 0;
     result.counters = {{"froxels", froxels},
                        {"rays", double(counters.rays)},
@@ -116,19 +116,6 @@ class PreparedFog final : public scene::Prepared {
   void keep(const Volume& volume, const scene::View& view) const {
     const std::lock_guard lock(mutex_);
     last_.emplace(volume, view);
-  }
-
-  // Slices that are too coarse for the view.
-  void warn(const Volume& volume, const scene::View& view, scene::Film& film) const {
-    const auto slice_ends = [&](const Ray& ray, double t_end, std::vector<double>& ends) {
-      const double along = depth_per_metre(view.camera, ray);
-      for (int k = 0; k <= volume.slices().count(); ++k) {
-        ends.push_back(volume.slices().decode(double(k) / volume.slices().count()) / along);
-        if (ends.back() >= t_end) break;
-      }
-    };
-    const std::string doubt = lit_media::doubt_of_steps(*lit_, *scene_, view, slice_ends);
-    if (!doubt.empty()) film.metadata["warning"] = "froxel_fog: " + doubt;
   }
 
   // Each pixel looks the volume up where its ray ends, or in the last slice.

@@ -95,4 +95,8 @@ Options read_options(const scene::Settings& effective) {
   return options;
 }
 
+Slices slices_of(const Options& o, Interval range) {
+  return Slices(o.slices, range, o.depth, o.depth == Distribution::log ? o.log_c : o.exponent);
+}
+
 }  // namespace airlight::froxel_fog

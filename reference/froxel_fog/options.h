@@ -35,6 +35,9 @@ struct Options {
   lit_media::Options media;
 };
 
+// The slices that cover a range [m], which is not empty.
+Slices slices_of(const Options&, Interval range);
+
 // All settings with the defaults of `fitted`. A setting that is read only beside others is also accepted beside the
 // presets of engines, whose defaults may enable it.
 std::vector<scene::SettingSpec> option_specs();

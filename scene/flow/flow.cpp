@@ -1,5 +1,6 @@
 #include "scene/flow/flow.h"
 
+#include "scene/base/device_check.h"
 #include "scene/base/error.h"
 
 namespace airlight::scene {
@@ -14,6 +15,7 @@ std::unique_ptr<Flow> Solver::start(std::shared_ptr<const FlowProblem> problem, 
                                     const Execution& execution) const {
   const std::vector<std::string> reasons = supports(*problem, settings);
   if (!reasons.empty()) throw NotSupported(name() + ": " + reasons.front(), reasons.front());
+  check_device(*this);
   if (problem->file.empty()) return start_supported(std::move(problem), settings, execution);
   try {
     return start_supported(problem, settings, execution);

@@ -50,6 +50,11 @@ void compare(const std::string& name, const scene::Rendering& cpu, const scene::
   CAPTURE(name);
   gpu::test::agree(name, cpu.film, gpu.film, {bounds.p99, bounds.worst});
   REQUIRE(gpu.film.layers.size() == cpu.film.layers.size());
+  const auto warning = [](const scene::Film& film) {
+    const auto found = film.metadata.find("warning");
+    return found == film.metadata.end() ? "" : found->second.substr(found->second.find(':'));
+  };
+  CHECK(warning(cpu.film) == warning(gpu.film));
   for (const auto& [counter, value] : cpu.counters) {
     CAPTURE(counter);
     // Points in a boundary may lie on either side, and where nothing is left of a sum rounding may leave something.
@@ -116,6 +121,15 @@ DEVICE_TEST_CASE("froxel fog: what ends rays on the GPU", "[gpu][froxel_fog]") {
       if (auto* point = std::get_if<scene::PointLight>(&light)) point->radius = 0.05;
     agree(file, seen_by(changed, view_of(changed)), {{"tile", "4"}, {"jitter", "halton"}, {"frames", "4"}});
     agree(file, seen_by(changed, view_of(changed)), {{"preset", "hdrp"}, {"tile", "4"}});
+    // By the rasteriser, too, but for silhouettes; the rays of froxels go through the tree all the same.
+    Given given = small_maps({{"tile", "4"}, {"jitter", "halton"}, {"frames", "4"}});
+    const auto scene = seen_by(changed, view_of(changed));
+    const scene::Rendering tree = test::render(gpu::froxel_fog::FroxelFog(), scene, given);
+    given["first_hits"] = "raster";
+    const scene::Rendering raster = test::render(gpu::froxel_fog::FroxelFog(), scene, given);
+    CHECK(tree.counters.at("draws") == 0);
+    CHECK(raster.counters.at("draws") > 0);
+    gpu::test::agree(file, tree.film, raster.film, {4e-6}, {"mean", "airlight", "surface"});
   }
   // Cells' centres lie between the picture's pixels.
   auto behind = std::make_shared<scene::Scene>(*smoke(froxel_fog::wide_camera(), 32, 24));
@@ -190,6 +204,19 @@ DEVICE_TEST_CASE("froxel fog: pictures and counters are the same in any rounds",
     for (const char* counter : {"points", "look_ups", "occlusion_rays"})
       CHECK(parts.counters.at(counter) == whole.counters.at(counter));
   }
+}
+
+// Thin endless fog: the slices reach so far that none is near the lamp, and the picture says so. Which step is the worst is up to rounding.
+DEVICE_TEST_CASE("froxel fog: slices that are too coarse are told on the GPU as on the CPU", "[gpu][froxel_fog]") {
+  const SharedScene scene = froxel_fog::fog_scene(
+      {froxel_fog::make_medium(scene::Homogeneous{1}, scene::Unbounded{}, Rgb::Constant(1e-6), Rgb::Constant(0.9))},
+      {scene::PointLight{Point3(1.5, 2, 0.5), Rgb::Constant(10), 0}}, froxel_fog::wide_camera(), 9, 7);
+  const Given given = small_maps({{"tile", "1"}, {"slices", "256"}});
+  const scene::Film cpu = test::picture(froxel_fog::FroxelFog(), scene, given),
+                    gpu = test::picture(gpu::froxel_fog::FroxelFog(), scene, given);
+  const std::string same = "on 100 % of rays a lamp is nearer than half a step";
+  CHECK_THAT(cpu.metadata.at("warning"), Catch::StartsWith("froxel_fog: " + same));
+  CHECK_THAT(gpu.metadata.at("warning"), Catch::StartsWith("froxel_fog_gpu: " + same));
 }
 
 TEST_CASE("froxel fog: what the GPU does not do is said; a render can be stopped", "[gpu][froxel_fog]") {

@@ -82,6 +82,22 @@ DEVICE_TEST_CASE("half-resolution march: every setting on the GPU is that of the
   }
 }
 
+// By the rasteriser, too, but for silhouettes; the middles of blocks go through the tree all the same.
+DEVICE_TEST_CASE("half-resolution march: first hits by the rasteriser", "[gpu][half_resolution_march]") {
+  for (const char* name : {"crosscheck/surfaces_in_fog", "elephant_fog"})
+    for (const char* depth : {"min_max", "centre"}) {
+      const auto scene = test::scene_named(name, 61, 45);
+      Given given = little({{"steps", "8"}, {"depth", depth}});
+      const scene::Rendering tree = test::render(device, scene, given);
+      given["first_hits"] = "raster";
+      const scene::Rendering raster = test::render(device, scene, given);
+      CAPTURE(name, depth);
+      CHECK(tree.counters.at("draws") == 0);
+      CHECK(raster.counters.at("draws") > 0);
+      gpu::test::agree(name, tree.film, raster.film, {4e-6}, {"mean", "airlight", "surface"});
+    }
+}
+
 // Pictures with depth, of which one pixel has no end: at pixels, and at the middles of blocks, which the film's edge cuts.
 DEVICE_TEST_CASE("half-resolution march: backdrops on the GPU are those of the CPU", "[gpu][half_resolution_march]") {
   scene::Backdrop backdrop{13, 9, {}, {}, true};
