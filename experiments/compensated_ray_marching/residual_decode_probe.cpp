@@ -21,12 +21,15 @@ using gpu::compensated_ray_marching::ResidualOnDevice;
 using Levels = std::vector<std::int8_t>;
 using Points = std::vector<Eigen::Vector4f>;  // in samples; the last is not read
 
-enum class DeviceStore { bricks, hash_tags, hash_domain };
-const scene::Choices<DeviceStore> device_stores{
-    {"bricks", DeviceStore::bricks}, {"hash_tags", DeviceStore::hash_tags}, {"hash_domain", DeviceStore::hash_domain}};
+enum class DeviceStore { grid, bricks, hash_tags, hash_domain };
+const scene::Choices<DeviceStore> device_stores{{"grid", DeviceStore::grid},
+                                                {"bricks", DeviceStore::bricks},
+                                                {"hash_tags", DeviceStore::hash_tags},
+                                                {"hash_domain", DeviceStore::hash_domain}};
 
 std::unique_ptr<ResidualOnDevice> store_of(gpu::Context& context, DeviceStore store, const Vector3i& size,
                                            const Levels& levels) {
+  if (store == DeviceStore::grid) return std::make_unique<ResidualOnDevice>(context, size, levels);
   if (store == DeviceStore::bricks)
     return std::make_unique<ResidualOnDevice>(context, size, scene::apron_bricks_of(size, levels));
   return std::make_unique<ResidualOnDevice>(
@@ -128,12 +131,13 @@ double worst_of(gpu::Context& context, const ResidualOnDevice& residual, const V
 }  // namespace
 
 std::string ResidualDecode::about() const {
-  return "look-ups in a residual on the device: bricks with an apron, perfect hash; Zhou et al. 2008, section 5.2";
+  return "look-ups in a residual on the device: grid, bricks with an apron, perfect hash; Zhou et al. 2008, section 5.2";
 }
 
 std::vector<scene::SettingSpec> ResidualDecode::settings() const {
-  return {scene::choice_setting("store", DeviceStore::bricks, device_stores,
-                                "bricks of 8^3 cells; hash_tags, hash_domain: how it tells what is stored"),
+  return {scene::choice_setting(
+              "store", DeviceStore::bricks, device_stores,
+              "grid: all levels; bricks of 8^3 cells; hash_tags, hash_domain: how it tells what is stored"),
           scene::choice_setting("smoke", "scene", {"scene", "noise"}, "the grid of the scene's medium, or curl noise"),
           scene::integer_setting("size", "64", 8, 256, "samples along a side of the curl noise"),
           scene::integer_setting("gaussians", "400", 0, 100000, "that the residual is against"),

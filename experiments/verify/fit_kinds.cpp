@@ -56,7 +56,8 @@ Check read_fit_objective(const Value& v) {
   const double objective = expected["objective"].number(), squares = expected["sum_D2"].number();
   const std::vector<double> gradient = expected["gradient"].numbers();
   if (gradient.size() != 5 * gaussians.size()) expected["gradient"].complain("five numbers for every Gaussian");
-  return {"", [=](VerifyProfile) {
+  return {"",
+          [=](VerifyProfile) {
             const std::vector<double> values = values_of(density, n);
             scene::FitObjective<double> fit({n, n, n}, values.data(), 1, cut, 0);
             std::vector<double> got(gradient.size());
@@ -66,7 +67,8 @@ Check read_fit_objective(const Value& v) {
             for (std::size_t i = 0; i < gradient.size(); ++i)
               out.add(relative(fmt::format("gradient {}", i), gradient[i], got[i] * (i % 5 == 4 ? 1 : n), rtol, atol));
             return out;
-          }};
+          },
+          nullptr, "fits are made on the processor"};
 }
 
 }  // namespace airlight::experiments::verification

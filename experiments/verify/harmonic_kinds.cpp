@@ -342,34 +342,36 @@ Check read_ol_table(const Value& v) {
   const std::vector<double> sizes = in["s"].numbers(), a = expected["a"].numbers(), b = expected["b"].numbers();
   if (a.size() != sizes.size() || b.size() != sizes.size()) expected.complain("an a and a b for every s");
   const OwnTolerance t = tolerance_of(v);
+  Check check{"", nullptr, nullptr, "the device reads this table, and does not make it"};
   if (in.has("counts")) {
     std::vector<int> counts;
     for (std::size_t i = 0; i < in["counts"].size(); ++i) counts.push_back(in["counts"][i].integer_in(1, 1000));
     const std::vector<double> a_error = v["stderr"]["a"].numbers(), b_error = v["stderr"]["b"].numbers();
     if (a_error.size() != a.size() || b_error.size() != b.size()) v["stderr"].complain("one for every a and b");
-    return {"", [=](VerifyProfile profile) {
-              const Linear got =
-                  of_sample(crm::depth_family(4, counts, profile == VerifyProfile::quick ? 400 : 20000), sizes);
-              Outcome out;
-              for (std::size_t i = 0; i < sizes.size(); ++i) {
-                out.add(statistical(fmt::format("a {}", i), a[i], a_error[i], got.a[i], got.a_error[i], accept_se));
-                out.add(statistical(fmt::format("b {}", i), b[i], b_error[i], got.b[i], got.b_error[i], accept_se));
-              }
-              return out;
-            }};
+    check.job = [=](VerifyProfile profile) {
+      const Linear got = of_sample(crm::depth_family(4, counts, profile == VerifyProfile::quick ? 400 : 20000), sizes);
+      Outcome out;
+      for (std::size_t i = 0; i < sizes.size(); ++i) {
+        out.add(statistical(fmt::format("a {}", i), a[i], a_error[i], got.a[i], got.a_error[i], accept_se));
+        out.add(statistical(fmt::format("b {}", i), b[i], b_error[i], got.b[i], got.b_error[i], accept_se));
+      }
+      return out;
+    };
+    return check;
   }
   std::vector<Harmonics> family;
   if (in.has("unit_vectors"))
     for (std::size_t i = 0; i < in["unit_vectors"].size(); ++i)
       family.push_back(harmonics_of(in["unit_vectors"][i], 4));
   const OneGaussian one = family.empty() ? one_gaussian_of(in["family"]) : OneGaussian{};
-  return {"", [=](VerifyProfile) {
-            const Linear got = family.empty() ? of_one_gaussian(one, sizes) : of_family(family, sizes);
-            Outcome out;
-            compare_all(out, "a", a, got.a, t);
-            compare_all(out, "b", b, got.b, t);
-            return out;
-          }};
+  check.job = [=](VerifyProfile) {
+    const Linear got = family.empty() ? of_one_gaussian(one, sizes) : of_family(family, sizes);
+    Outcome out;
+    compare_all(out, "a", a, got.a, t);
+    compare_all(out, "b", b, got.b, t);
+    return out;
+  };
+  return check;
 }
 
 }  // namespace airlight::experiments::verification

@@ -76,6 +76,8 @@ Check read_ray_march_homogeneous(const Value&);
 
 // transport_kinds.cpp: multiple scattering that it is compared with
 Check read_without_renderer(const Value&);
+Check read_diffusion_point_source(const Value&);
+Check read_diffusion_slab(const Value&);
 Check read_diffusion_uniform_source(const Value&);
 Check read_multiple_scattering_ball(const Value&);
 

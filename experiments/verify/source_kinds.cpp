@@ -7,6 +7,7 @@
 #include "experiments/verify/smoke_on_device.h"
 #include "experiments/verify/smoke_vector.h"
 #include "gpu/compensated_ray_marching/centre_tables.h"
+#include "gpu/compensated_ray_marching/diffusion_vectors.h"
 #include "methods/compensated_ray_marching/diffusion_system.h"
 #include "methods/compensated_ray_marching/harmonic_exponential.h"
 #include "scene/math/sh_product.h"
@@ -72,13 +73,14 @@ System system_on_device(const std::vector<scene::Gaussian>& gaussians, const std
   const auto program_of = [&](const char* file, const char* sums) -> gpu::Program& {
     on::Definitions definitions = tables.definitions();
     definitions["SUMS"] = sums;
+    definitions["VECTORS"] = std::to_string(on::diffusion::vectors_of_least_squares);
     gpu::Program& p = on::program(context, file, 64, 1, definitions);
     p.set("gaussian_count", int(n));
     return p;
   };
   const gpu::Buffer centres(context, "centres", numbers_of(gaussians)), sources(context, "sources", single),
-      matrix(context, "matrix", 8 * n * n), scales(context, "scales", 8 * n), vectors(context, "vectors", 8 * 6 * n),
-      systems(context, "systems", 64);
+      matrix(context, "matrix", 8 * n * n), scales(context, "scales", 8 * n),
+      vectors(context, "vectors", 8 * n * on::diffusion::vectors_of_least_squares), systems(context, "systems", 64);
   gpu::Program& of_matrix = program_of("diffusion_matrix", "5");
   centres.bind(on::at::centres);
   matrix.bind(on::at::matrix);
@@ -92,6 +94,7 @@ System system_on_device(const std::vector<scene::Gaussian>& gaussians, const std
   vectors.bind(on::at::vectors);
   systems.bind(on::at::systems);
   of_right.set("first_system", 0);
+  of_right.set("unknowns", int(n));
   of_right.set("channel[0]", 0);
   of_right.set_double("of_mean", printed ? -sigma_t / albedo : -sigma_t);
   of_right.set_double("of_gradient", sigma_t / ((printed ? 1 : 3) * transport));

@@ -5,23 +5,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gpu/compensated_ray_marching/diffusion_vectors.h"
+
 namespace airlight::gpu::compensated_ray_marching {
 namespace {
 
 using airlight::compensated_ray_marching::LeastSquaresSolver;
 using airlight::compensated_ray_marching::Options;
 using airlight::compensated_ray_marching::Solution;
+using diffusion::SystemData;
 
 constexpr int row_lanes = 64, edge = 16, summing = 256;  // invocations of a work group
 constexpr int first_solve_iterations = 8;                // told to the device before any is looked at
 
-// diffusion_vectors.glsl and diffusion_gradients.comp.
-enum Vector { right, solution_vector, residual_vector, gradient, direction, along, vector_count };
-enum GradientStage { stage_begin, stage_residual, stage_step, stage_turn, stage_spread };
-struct SystemData {
-  double square, whole, alpha, beta, diagonal, left;
-  int done, iterations, negative, unused;
-};
+enum GradientStage { stage_begin, stage_residual, stage_step, stage_turn, stage_spread };  // diffusion_gradients.comp
+constexpr auto vector_count = diffusion::vectors_of_least_squares;
 
 bool is_lsqr(LeastSquaresSolver solver) {
   return solver == LeastSquaresSolver::lsqr || solver == LeastSquaresSolver::lsqr_scaled;
@@ -43,6 +41,7 @@ CentreDiffusion::CentreDiffusion(Context& context, const CentreTables& tables, c
       count_(int(gaussians.size())) {
   const auto of = [&](const char* file, int x, int y, Definitions more) {
     more.insert(tables.definitions().begin(), tables.definitions().end());
+    more["VECTORS"] = std::to_string(vector_count);
     return &program(context, file, x, y, more);
   };
   matrix_program_ = of("diffusion_matrix", row_lanes, 1, {{"SUMS", "5"}});
@@ -111,7 +110,7 @@ void CentreDiffusion::begin_with(const Solution& last) {
       g.systems = int(g.channels.size());
     for (std::size_t s = 0; s < starts.size(); ++s)
       std::copy(starts[s].begin(), starts[s].end(),
-                vectors.begin() + long(((std::size_t(g.first) + s) * vector_count + solution_vector) * n));
+                vectors.begin() + long(((std::size_t(g.first) + s) * vector_count + diffusion::solution) * n));
   }
   vectors_->upload(vectors);
 }
@@ -125,7 +124,7 @@ Solution CentreDiffusion::solution() const {
     for (std::size_t i = 0; i < g.channels.size(); ++i) {
       const std::size_t system = std::size_t(g.first) + (g.systems == 1 ? 0 : i);
       now.of_channel[std::size_t(g.channels[i])] = Eigen::Map<const Eigen::ArrayXd>(
-          vectors.data() + (system * vector_count + solution_vector) * std::size_t(count_), count_);
+          vectors.data() + (system * vector_count + diffusion::solution) * std::size_t(count_), count_);
     }
   return now;
 }
@@ -133,12 +132,13 @@ Solution CentreDiffusion::solution() const {
 void CentreDiffusion::bind_systems(Program& p, const Group& g) const {
   vectors_->bind(at::vectors);
   systems_->bind(at::systems);
-  p.set("gaussian_count", count_);
+  p.set("unknowns", count_);
   p.set("first_system", g.first);
 }
 
 void CentreDiffusion::bind_channels(Program& p, const Group& g) const {
   bind_systems(p, g);
+  p.set("gaussian_count", count_);
   centres_.bind(at::centres);
   single_.bind(at::single_bands);
   for (std::size_t i = 0; i < g.channels.size(); ++i) p.set(fmt::format("channel[{}]", i), g.channels[i]);
@@ -201,17 +201,18 @@ void CentreDiffusion::scatter_again(Group& g, const scene::Execution& execution)
 
 // Least squares: conjugate gradients of the normal equations, or LSQR.
 void CentreDiffusion::solve(Group& g, const scene::Execution& execution) {
-  product(g, false, solution_vector, along);
+  const bool lsqr = is_lsqr(options_.paper.solver);
+  product(g, false, diffusion::solution, diffusion::along);
   gradients(g, stage_residual);
-  product(g, true, residual_vector, gradient);
-  product(g, true, right, along);
+  product(g, true, diffusion::residual, diffusion::gradient);
+  product(g, true, diffusion::right, diffusion::along);
   gradients(g, stage_begin);
   int told = 0, next = std::min(g.last > 0 ? g.last : first_solve_iterations, options_.iterations);
   for (bool done = false; !done;) {
     for (; told < next; ++told) {
-      product(g, false, is_lsqr(options_.paper.solver) ? gradient : direction, along);
+      product(g, false, lsqr ? diffusion::gradient : diffusion::direction, diffusion::along);
       gradients(g, stage_step);
-      product(g, true, residual_vector, is_lsqr(options_.paper.solver) ? along : gradient);
+      product(g, true, diffusion::residual, lsqr ? diffusion::along : diffusion::gradient);
       gradients(g, stage_turn);
     }
     const std::vector<SystemData> all = systems_->download<SystemData>();

@@ -1,7 +1,6 @@
 // Conjugate gradients on the normal equations, or LSQR, between products with the matrix: conjugate_gradients and lsqr of
 // diffusion_system.cpp, with their iterations and their end. A system is a work group's.
 layout(local_size_x = LOCAL_SIZE_X) in;
-uniform int gaussian_count;
 #include "compensated_ray_marching/diffusion_vectors.glsl"
 #define lane int(gl_LocalInvocationIndex)
 const int lanes = LOCAL_SIZE_X;
@@ -22,17 +21,17 @@ double total(double mine) {
 }
 double square_of(int vector) {
   double sum = 0;
-  for (int i = lane; i < gaussian_count; i += lanes) sum += vectors[vector + i] * vectors[vector + i];
+  for (int i = lane; i < unknowns; i += lanes) sum += vectors[vector + i] * vectors[vector + i];
   return total(sum);
 }
 
 #if LSQR
 // Vector `to` becomes `from` less `factor` times what it was, of length 1 unless it is 0. Returns the length before.
 double normalised(int to, int from, double factor) {
-  for (int i = lane; i < gaussian_count; i += lanes) vectors[to + i] = vectors[from + i] - factor * vectors[to + i];
+  for (int i = lane; i < unknowns; i += lanes) vectors[to + i] = vectors[from + i] - factor * vectors[to + i];
   double length_ = sqrt(square_of(to));
   if (length_ > 0)
-    for (int i = lane; i < gaussian_count; i += lanes) vectors[to + i] /= length_;
+    for (int i = lane; i < unknowns; i += lanes) vectors[to + i] /= length_;
   return length_;
 }
 #endif
@@ -44,11 +43,11 @@ void main() {
   if (stage == STAGE_SPREAD) {  // the solution of the solve's first system, to all
     int first = vector_at(0, SOLUTION);
     if (z > 0)
-      for (int i = lane; i < gaussian_count; i += lanes) vectors[solution + i] = vectors[first + i];
+      for (int i = lane; i < unknowns; i += lanes) vectors[solution + i] = vectors[first + i];
     return;
   }
   if (stage == STAGE_RESIDUAL) {  // `along` is the matrix times the start
-    for (int i = lane; i < gaussian_count; i += lanes) vectors[residual + i] = vectors[right + i] - vectors[along + i];
+    for (int i = lane; i < unknowns; i += lanes) vectors[residual + i] = vectors[right + i] - vectors[along + i];
     return;
   }
   if (states[system].done != 0) return;
@@ -72,7 +71,7 @@ void main() {
     now.alpha = normalised(gradient, along, now.beta);
     double length_ = sqrt(now.diagonal * now.diagonal + now.beta * now.beta);
     double cosine = now.diagonal / length_, sine = now.beta / length_, step_ = cosine * now.left / length_;
-    for (int i = lane; i < gaussian_count; i += lanes) vectors[solution + i] += step_ * vectors[direction + i];
+    for (int i = lane; i < unknowns; i += lanes) vectors[solution + i] += step_ * vectors[direction + i];
     share = -sine * now.alpha / length_;
     now.left *= sine;
     now.diagonal = -cosine * now.alpha;
@@ -85,7 +84,7 @@ void main() {
     double length_ = square_of(along);
     if (length_ > 0) {
       double step_ = now.square / length_;
-      for (int i = lane; i < gaussian_count; i += lanes) {
+      for (int i = lane; i < unknowns; i += lanes) {
         vectors[solution + i] += step_ * vectors[direction + i];
         vectors[residual + i] -= step_ * vectors[along + i];
       }
@@ -107,7 +106,7 @@ void main() {
 #endif
   if (!(now.whole > 0)) now.whole = 1;
   double negative = 0;
-  for (int i = lane; i < gaussian_count; i += lanes) {
+  for (int i = lane; i < unknowns; i += lanes) {
     vectors[direction + i] = vectors[gradient + i] + (share == 0 ? 0 : share * vectors[direction + i]);
     if (vectors[solution + i] < 0) negative += 1;
   }

@@ -1,6 +1,6 @@
 // The matrix of the diffusion system times a vector of every system of a solve, or TRANSPOSED, the transposed matrix.
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
-uniform int gaussian_count, from_vector, to_vector;
+uniform int from_vector, to_vector;
 #include "compensated_ray_marching/diffusion_vectors.glsl"
 layout(std430, binding = AT_MATRIX) readonly buffer Matrix { double matrix[]; };  // [row][column]
 shared double parts[LOCAL_SIZE_X * LOCAL_SIZE_Y];
@@ -17,16 +17,16 @@ void main() {
   if (over) return;
   double sum = 0;
   int from = vector_at(z, from_vector);
-  if (result < gaussian_count)
-    for (int k = part; k < gaussian_count; k += parts_of)
+  if (result < unknowns)
+    for (int k = part; k < unknowns; k += parts_of)
 #if TRANSPOSED
-      sum += matrix[k * gaussian_count + result] * vectors[from + k];
+      sum += matrix[k * unknowns + result] * vectors[from + k];
 #else
-      sum += matrix[result * gaussian_count + k] * vectors[from + k];
+      sum += matrix[result * unknowns + k] * vectors[from + k];
 #endif
   parts[y * LOCAL_SIZE_X + x] = sum;
   barrier();
-  if (part != 0 || result >= gaussian_count) return;
+  if (part != 0 || result >= unknowns) return;
   sum = 0;
 #if TRANSPOSED
   for (int k = 0; k < parts_of; ++k) sum += parts[k * LOCAL_SIZE_X + x];

@@ -19,6 +19,7 @@ using airlight::compensated_ray_marching::IncomingLight;
 using airlight::compensated_ray_marching::LitGrid;
 using airlight::compensated_ray_marching::Options;
 using airlight::compensated_ray_marching::Ordinate;
+using airlight::compensated_ray_marching::P1Options;
 
 constexpr int line = 64, tile = 8;  // invocations of a work group: along a list, and both ways in a plane
 constexpr int groups_of_sums = 64, sum_lanes = 128;
@@ -74,9 +75,10 @@ LitGridOnDevice::LitGridOnDevice(Context& context, const scene::Medium& medium, 
   logarithms_program_ = program_of("logarithms", line);
   if (!grid.beyond().nodes.empty()) upload_edges(grid.beyond());
   if (!multiple_) return;
+  single_program_ = program_of("single", line);
+  if (by_diffusion()) return;
   upload_ordinates();
   upload_cells(grid);
-  single_program_ = program_of("single", line);
   emit_program_ = program_of("emit", line);
   sweep_program_ = program_of("sweep", tile, tile);
   collect_program_ = program_of("collect", line);
@@ -86,6 +88,8 @@ LitGridOnDevice::LitGridOnDevice(Context& context, const scene::Medium& medium, 
   parts_ = std::make_unique<Buffer>(context_, "parts of sums", 8 * std::size_t(groups_of_sums * (3 + 2 * kept)));
   state_ = std::make_unique<Buffer>(context_, "state", sizeof(StateData));
 }
+
+bool LitGridOnDevice::by_diffusion() const { return options_.grid.multiple == Options::Grid::Multiple::p1; }
 
 Program* LitGridOnDevice::program_of(const char* file, int x, int y) {
   return &program(context_, file, x, y,
@@ -159,7 +163,7 @@ void LitGridOnDevice::arrange(bool grey) {
     if (known != groups_.end())
       known->channels.push_back(c);
     else
-      groups_.push_back({{c}});
+      groups_.emplace_back().channels = {c};
   }
   lights_ = 0;
   std::size_t most = 0;
@@ -174,8 +178,17 @@ void LitGridOnDevice::arrange(bool grey) {
   const std::size_t cells = 4 * std::size_t(cells_), bands = std::size_t(options_.order * options_.order);
   // Beyond the nodes with smoke nothing is ever written, so that zeros stay.
   single_ = std::make_unique<Buffer>(context_, "single scattering", cells * bands * std::size_t(lights_));
-  source_ = std::make_unique<Buffer>(context_, "source", cells * bands * std::size_t(lights_));
   result_ = std::make_unique<Buffer>(context_, "result", cells * bands * std::size_t(lights_));
+  if (by_diffusion()) {
+    for (Group& g : groups_) {
+      const int c = g.channels[0];
+      g.diffusion = std::make_unique<P1GridOnDevice>(
+          context_, grid_.cells, *densities_, Scatterer{sigma_t[c], albedo[c], mean_cosine(medium_.phase)},
+          options_.order, g.lights, P1Options{options_.tolerance, options_.iterations});
+    }
+    return;
+  }
+  source_ = std::make_unique<Buffer>(context_, "source", cells * bands * std::size_t(lights_));
   buffer(emitted_, "emitted", cells * most * std::size_t(ordinates_));
   buffer(radiance_of_ways_, "radiance of ordinates", cells * most * std::size_t(ordinates_));
   buffer(steps_, "steps", cells * most * bands * kept);
@@ -333,6 +346,12 @@ void LitGridOnDevice::scatter_again(Group& g, bool cold, const scene::Execution&
   }
 }
 
+void LitGridOnDevice::diffuse(Group& g, const scene::Execution& execution) {
+  g.diffusion->solve(*single_, *result_, g.first, execution);
+  iterations_ += g.diffusion->iterations();
+  error_ = std::max(error_, g.diffusion->error());
+}
+
 void LitGridOnDevice::light(const IncomingLight& light, StageTimer& timer, const scene::Execution& execution) {
   timer.begin(light.directions().size() > light.fixed() ? "depths of directional lights" : "upload");
   const bool moved = columns_.aim(light, execution);
@@ -350,13 +369,17 @@ void LitGridOnDevice::light(const IncomingLight& light, StageTimer& timer, const
   bool cold = !single_ || grey_ != light.grey();
   if (cold) {
     arrange(grey_ = light.grey());
-    cold = !begin();
+    cold = by_diffusion() || !begin();
     last_ = {};
   }
   timer.begin("single scattering");
   for (const Group& g : groups_) scatter_once(g);
   timer.begin("multiple scattering");
-  for (Group& g : groups_) scatter_again(g, cold, execution);
+  for (Group& g : groups_)
+    if (g.diffusion)
+      diffuse(g, execution);
+    else
+      scatter_again(g, cold, execution);
 }
 
 // Uploads what the last smoke's solution has at the nodes; false: not that of every light.

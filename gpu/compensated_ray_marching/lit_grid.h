@@ -1,10 +1,11 @@
-// Source radiance at the nodes of a grid, on the device: single scattering, discrete ordinates for the rest, and what of both goes towards
-// the camera. A new light changes what 128 directions (of 8 levels) bring, and the columns towards those that moved.
+// Source radiance at the nodes of a grid, on the device: single scattering, discrete ordinates or diffusion for the rest, and what of both
+// goes towards the camera. A new light changes what 128 directions (of 8 levels) bring, and the columns towards those that moved.
 #pragma once
 #include <array>
 #include <memory>
 #include <optional>
 
+#include "gpu/compensated_ray_marching/p1_grid.h"
 #include "gpu/compensated_ray_marching/smoke_columns.h"
 #include "gpu/timer.h"
 #include "scene/renderer.h"
@@ -21,7 +22,8 @@ class LitGridOnDevice {
   // they are looked at.
   void light(const airlight::compensated_ray_marching::IncomingLight&, StageTimer&, const scene::Execution&);
 
-  // Where the first light begins: with the solution of the last frame's smoke, which `solution` downloads.
+  // Where the first light begins: with the solution of the last frame's smoke, which `solution` downloads. Diffusion begins with nothing,
+  // as on the CPU, and has no solution for others.
   void begin_with(airlight::compensated_ray_marching::Solution last) { last_ = std::move(last); }
   airlight::compensated_ray_marching::Solution solution() const;
 
@@ -37,7 +39,9 @@ class LitGridOnDevice {
     std::vector<int> channels;
     int first = 0, lights = 0;  // in buffers of all lights
     int last = 0;               // iterations
+    std::unique_ptr<P1GridOnDevice> diffusion;
   };
+  bool by_diffusion() const;
   Program* program_of(const char* file, int x, int y = 1);
   void upload_edges(const airlight::compensated_ray_marching::BeyondEdges&);
   void upload_ordinates();
@@ -47,6 +51,7 @@ class LitGridOnDevice {
   bool begin();
   void scatter_once(const Group&);
   void scatter_again(Group&, bool cold, const scene::Execution&);
+  void diffuse(Group&, const scene::Execution&);
   void iterate(const Group&, int iteration);
   void emit(const Group&);
   void sweep(const Group&);

@@ -10,7 +10,6 @@
 namespace airlight::gpu::compensated_ray_marching {
 namespace {
 
-using airlight::compensated_ray_marching::Options;
 using airlight::compensated_ray_marching::SmokeField;
 
 constexpr double negligible_widths = 6.257, nothing_beyond = 6;  // scene/media/gaussian_sum.cpp, gaussian_row.cpp
@@ -88,13 +87,8 @@ void SmokeDensity::bind(Program& p) const {
   p.set("border", border_);
 }
 
-std::vector<std::string> unsupported_smoke(const scene::Scene& scene, const Options& options) {
+std::vector<std::string> unsupported_smoke(const scene::Scene& scene) {
   std::vector<std::string> reasons;
-  const bool paper = options.variant == Options::Variant::paper;
-  if (paper && options.paper.store == airlight::compensated_ray_marching::ResidualStore::grid)
-    reasons.push_back("residual_store = grid; shaders know bricks and hash");
-  if (!paper && options.grid.multiple == Options::Grid::Multiple::p1)
-    reasons.push_back("multiple = p1; shaders know ordinates");
   for (std::size_t i = 0; i < scene.media.size(); ++i) {
     const scene::Medium& medium = scene.media[i];
     if (!extinguishes(medium)) continue;

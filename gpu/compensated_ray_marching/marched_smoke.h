@@ -38,6 +38,6 @@ class SmokeDensity {
 };
 
 // Why the device does not march through a medium; empty: it does.
-std::vector<std::string> unsupported_smoke(const scene::Scene&, const airlight::compensated_ray_marching::Options&);
+std::vector<std::string> unsupported_smoke(const scene::Scene&);
 
 }  // namespace airlight::gpu::compensated_ray_marching

@@ -23,7 +23,7 @@ using scene::View;
 std::vector<std::string> unsupported_on_device(const Scene& scene, const Options& options) {
   std::vector<std::string> reasons = airlight::compensated_ray_marching::unsupported(scene, options);
   for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
-  for (const std::string& reason : unsupported_smoke(scene, options)) reasons.push_back(reason);
+  for (const std::string& reason : unsupported_smoke(scene)) reasons.push_back(reason);
   return reasons;
 }
 

@@ -1,8 +1,10 @@
 // Levels of a residual on the device: scene/convert/residual_bricks.h and perfect_hash.h, decoded; residual_store.h is the host's side.
 //   int residual_level(ivec3 sample)     the level of a sample, 0 outside; bit for bit the processor's
 //   float residual_between(vec3 sample)  trilinear between levels, 0 beyond one voxel outside [levels]; the same of all kinds
-// A hash takes two dependent reads for a level, sixteen for what lies between; bricks take two and five.
-#if RESIDUAL_KIND == RESIDUAL_BRICKS
+// A grid takes one read for a level, eight for what lies between; bricks take two and five; a hash two dependent ones and sixteen.
+#if RESIDUAL_KIND == RESIDUAL_GRID
+layout(std430, binding = AT_RESIDUAL_VALUES) readonly buffer ResidualValues { uint residual_values[]; };  // four levels a word
+#elif RESIDUAL_KIND == RESIDUAL_BRICKS
 layout(std430, binding = AT_RESIDUAL_INDEX) readonly buffer ResidualIndex { uint residual_index[]; };
 layout(std430, binding = AT_RESIDUAL_VALUES) readonly buffer ResidualValues { uint residual_values[]; };  // four levels a word
 #else
@@ -57,6 +59,13 @@ float residual_between(vec3 p) {
 
 #else
 
+#if RESIDUAL_KIND == RESIDUAL_GRID
+int residual_level(ivec3 p) {
+  if (any(lessThan(p, ivec3(0))) || any(greaterThanEqual(p, residual_size))) return 0;
+  int at = p.x + residual_size.x * (p.y + residual_size.y * p.z);
+  return residual_byte(residual_values[at >> 2], at & 3);
+}
+#else
 int residual_level(ivec3 p) {
   if (residual_m == 0 || any(lessThan(p, ivec3(0))) || any(greaterThanEqual(p, residual_size))) return 0;
   p += ivec3(residual_tile);
@@ -78,6 +87,7 @@ int residual_level(ivec3 p) {
   return residual_byte(residual_slots[slot >> 2], slot & 3);
 #endif
 }
+#endif
 
 float residual_between(vec3 p) {
   if (!all(greaterThanEqual(p, vec3(-1))) || !all(lessThan(p, vec3(residual_size)))) return 0;

@@ -31,6 +31,10 @@ void set(Program& program, const std::string& name, const Eigen::Vector3i& v) {
 
 }  // namespace
 
+ResidualOnDevice::ResidualOnDevice(Context& context, const Eigen::Vector3i& size,
+                                   const std::vector<std::int8_t>& levels)
+    : kind_(Kind::grid), size_(size), values_(buffer(context, "levels of a residual", packed(levels))) {}
+
 ResidualOnDevice::ResidualOnDevice(Context& context, const Eigen::Vector3i& size, const scene::ApronBricks& bricks)
     : kind_(Kind::bricks),
       size_(size),
@@ -67,6 +71,7 @@ ResidualOnDevice::ResidualOnDevice(Context& context, const Eigen::Vector3i& size
 std::map<std::string, std::string> ResidualOnDevice::definitions() const {
   const auto number = [](Kind kind) { return std::to_string(int(kind)); };
   std::map<std::string, std::string> all = {{"RESIDUAL_KIND", number(kind_)},
+                                            {"RESIDUAL_GRID", number(Kind::grid)},
                                             {"RESIDUAL_BRICKS", number(Kind::bricks)},
                                             {"RESIDUAL_TAGGED", number(Kind::tagged)},
                                             {"RESIDUAL_TAGGED_WIDE", number(Kind::tagged_wide)},
@@ -76,11 +81,11 @@ std::map<std::string, std::string> ResidualOnDevice::definitions() const {
 }
 
 void ResidualOnDevice::bind(Program& program) const {
-  index_->bind(at::residual_index);
+  if (index_) index_->bind(at::residual_index);
   values_->bind(at::residual_values);
   if (members_) members_->bind(at::residual_members);
   set(program, "residual_samples", size_);
-  if (kind_ == Kind::bricks) return;
+  if (kind_ == Kind::grid || kind_ == Kind::bricks) return;
   program.set("residual_m", m_);
   program.set("residual_r", r_);
   set(program, "residual_domain_size", domain_);
@@ -88,7 +93,7 @@ void ResidualOnDevice::bind(Program& program) const {
 }
 
 std::size_t ResidualOnDevice::bytes() const {
-  return index_->bytes() + values_->bytes() + (members_ ? members_->bytes() : 0);
+  return (index_ ? index_->bytes() : 0) + values_->bytes() + (members_ ? members_->bytes() : 0);
 }
 
 namespace {

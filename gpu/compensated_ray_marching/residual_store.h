@@ -1,4 +1,4 @@
-// A residual on the device, as bricks with an apron or as a perfect hash: what residual.glsl reads.
+// A residual on the device, as a grid, as bricks with an apron or as a perfect hash: what residual.glsl reads.
 #pragma once
 #include <map>
 #include <memory>
@@ -15,7 +15,7 @@ namespace airlight::gpu::compensated_ray_marching {
 // Storage blocks of residual.glsl and residual_levels.comp, AT_RESIDUAL_... in shaders.
 namespace at {
 enum ResidualBinding {
-  residual_index = 12,  // of bricks; offsets of a hash
+  residual_index = 12,  // of bricks; offsets of a hash; a grid has none
   residual_values = 13,
   residual_members = 14,  // bits of the domain, or tags beside the values
   residual_points = 0,
@@ -28,6 +28,8 @@ class ResidualOnDevice {
   // How a hash tells which positions are stored.
   enum class Membership { tags, domain };
 
+  // The residual of a frame of `size` samples as all its levels, x fastest. Throws Unavailable in one line where the device has no room.
+  ResidualOnDevice(Context&, const Eigen::Vector3i& size, const std::vector<std::int8_t>& levels);
   // The residual of a frame of `size` samples as bricks. Throws Unavailable in one line where the device has no room.
   ResidualOnDevice(Context&, const Eigen::Vector3i& size, const scene::ApronBricks&);
   // The residual of a frame of `size` samples as a hash; the frame begins at `tile` of the domain of its
@@ -43,7 +45,7 @@ class ResidualOnDevice {
   std::size_t bytes() const;
 
  private:
-  enum class Kind { bricks, tagged, tagged_wide, domain };
+  enum class Kind { grid, bricks, tagged, tagged_wide, domain };
   Kind kind_;
   Eigen::Vector3i size_, domain_ = Eigen::Vector3i::Zero(), tile_ = Eigen::Vector3i::Zero();
   int m_ = 0, r_ = 0;

@@ -33,8 +33,10 @@ SmokeVolume::SmokeVolume(Context& context, const airlight::compensated_ray_march
     if (const scene::PerfectHash* hash = residual->hash())
       residual_ =
           std::make_unique<ResidualOnDevice>(context, residual->size(), *hash, ResidualOnDevice::Membership::domain);
+    else if (const scene::ApronBricks* bricks = residual->bricks())
+      residual_ = std::make_unique<ResidualOnDevice>(context, residual->size(), *bricks);
     else
-      residual_ = std::make_unique<ResidualOnDevice>(context, residual->size(), *residual->bricks());
+      residual_ = std::make_unique<ResidualOnDevice>(context, residual->size(), residual->levels());
     for (const auto& [name, value] : residual_->definitions()) definitions[name] = value;
     definitions["RESIDUAL"] = "1";
   }

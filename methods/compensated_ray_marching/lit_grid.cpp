@@ -91,7 +91,6 @@ LitGrid::LitGrid(const scene::Scene& scene, const scene::Medium& medium, const O
   if (options.grid.multiple == Options::Grid::Multiple::ordinates && has_hard_edges(medium))
     find_balance(ordinates, execution);
   if (scene.geometry) find_open_ways(ordinates, execution);
-  find_channels(ordinates);
 }
 
 // Cells as small as the smoke's depth asks for, and the nodes of those with smoke.
@@ -117,8 +116,10 @@ void LitGrid::find_nodes(const IncomingLight& light, const scene::Execution& exe
   beyond_ = beyond_edges(medium_, grid_);
 }
 
-// Channels that have extinction and albedo in common are solved together.
-void LitGrid::find_channels(const OrdinateOptions& ordinates) {
+// Channels that have extinction and albedo in common are solved together. A device, which solves itself, never asks for this.
+void LitGrid::find_channels() {
+  if (!channels_.empty()) return;
+  const OrdinateOptions ordinates = ordinate_options(options_);
   const Rgb &sigma_t = medium_.sigma_t, &albedo = medium_.albedo;
   const std::vector<double> moments(phase_moments(medium_.phase, options_.order));
   for (int c = 0; c < 3; ++c) {
@@ -304,6 +305,8 @@ Moments LitGrid::scatter_once(const Channels& group, std::size_t lights, const E
 
 void LitGrid::scatter_again(const IncomingLight& light, const scene::Execution& execution) {
   scene::Stopwatch watch;
+  find_channels();
+  double single_seconds = 0, multiple_seconds = watch.lap();
   const int order = options_.order;
   const Eigen::Index bands = order * order;
   const std::vector<double> moments = phase_moments(medium_.phase, order);
@@ -311,7 +314,6 @@ void LitGrid::scatter_again(const IncomingLight& light, const scene::Execution& 
   again_.assign(nodes_.size(), std::vector<Rgb>(std::size_t(bands), Rgb::Zero()));
   tbb::task_arena arena(scene::threads_for(execution.threads));
   std::atomic<bool> stopped{false};
-  double single_seconds = 0, multiple_seconds = 0;
   for (Channels& group : channels_) {
     // For light without colour one channel stands for all.
     const std::size_t lights = light.grey() ? 1 : group.which.size();
@@ -348,10 +350,11 @@ void LitGrid::scatter_again(const IncomingLight& light, const scene::Execution& 
 }
 
 void LitGrid::begin_with(const Solution& last, bool grey) {
+  // Diffusion lets light through thin smoke so fast that the last solution is no closer in its residual than nothing.
+  if (!single_only_.empty() || options_.grid.multiple == Options::Grid::Multiple::p1) return;
+  find_channels();
   const Eigen::Index bands = options_.order * options_.order;
   for (Channels& group : channels_) {
-    // Diffusion lets light through thin smoke so fast that the last solution is no closer in its residual than nothing.
-    if (group.diffusion) continue;
     const auto lights = Eigen::Index(grey ? 1 : group.which.size());
     Moments start(grid_.cells.nodes(), lights * bands);
     bool known = true;

@@ -63,7 +63,7 @@ class LitGrid {
     std::optional<Moments> before;    // where to start from: a source, or radiance
   };
   void find_nodes(const IncomingLight&, const scene::Execution&);
-  void find_channels(const OrdinateOptions&);
+  void find_channels();
   void add_depths(const IncomingLight&, std::size_t from, const scene::Execution&);
   double look_around(const IncomingLight&, const OrdinateOptions&, const scene::Execution&);
   void find_balance(const OrdinateOptions&, const scene::Execution&);

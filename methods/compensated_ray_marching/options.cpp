@@ -133,8 +133,8 @@ void bind(scene::SettingBinder& b, Given& given) {
             {"grid", ResidualStore::grid},
             {"bricks", ResidualStore::bricks},
             {"hash", ResidualStore::hash}},
-           "of paper, where it is looked up: a float a sample, bricks of 8 bits, a perfect hash of 8 bits; "
-           "auto is grid, on a device, which has no grid, bricks")
+           "of paper, where it is looked up: a grid of all samples, bricks of 8 bits, a perfect hash of 8 bits; "
+           "auto is grid, on a device bricks")
       .where("variant", {"paper"});
   b.real("tolerance", o.tolerance, 1e-12, 1, "of multiple scattering, relative");
   b.integer("iterations", o.iterations, 1, 100000, "of multiple scattering, at most");

@@ -26,6 +26,18 @@ struct Face {
 
 }  // namespace
 
+double extinction_of_vacuum(const OrdinateGrid& grid) {
+  double longest = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double cell = grid.cell[Eigen::Index(a)];
+    if (grid.size[a] < 1 || !(cell > 0) || (grid.endless[a] && grid.size[a] != 1))
+      throw Error("diffusion: a grid without cells, or of several along an endless axis");
+    if (!grid.endless[a]) longest = std::max(longest, cell * grid.size[a]);
+  }
+  if (longest == 0) throw Error("diffusion: a grid without ends");
+  return thinnest_box / longest;
+}
+
 // The solver refers to the matrix beside it: both stay where they are.
 struct P1Grid::System {
   OrdinateGrid grid;
@@ -50,14 +62,7 @@ struct P1Grid::System {
 
 P1Grid::P1Grid(const OrdinateGrid& grid, const Eigen::ArrayXd& extinction, double albedo, double g,
                const P1Options& options) {
-  double longest = 0;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const double cell = grid.cell[Eigen::Index(a)];
-    if (grid.size[a] < 1 || !(cell > 0) || (grid.endless[a] && grid.size[a] != 1))
-      throw Error("diffusion: a grid without cells, or of several along an endless axis");
-    if (!grid.endless[a]) longest = std::max(longest, cell * grid.size[a]);
-  }
-  if (longest == 0) throw Error("diffusion: a grid without ends");
+  const double vacuum = extinction_of_vacuum(grid);
   if (extinction.size() != grid.nodes() || !extinction.allFinite() || !(extinction >= 0).all())
     throw Error(fmt::format("diffusion: found {} extinctions, expected {}, finite and not below 0", extinction.size(),
                             grid.nodes()));
@@ -73,7 +78,7 @@ P1Grid::P1Grid(const OrdinateGrid& grid, const Eigen::ArrayXd& extinction, doubl
   s.g = g;
   s.options = options;
   const auto half_resistance = [&](Eigen::Index i, int axis) {
-    return 0.5 * grid.cell[axis] * 3 * (1 - albedo * g) * std::max(extinction[i], thinnest_box / longest);
+    return 0.5 * grid.cell[axis] * 3 * (1 - albedo * g) * std::max(extinction[i], vacuum);
   };
   const std::array<Eigen::Index, 3> step{1, grid.size[0], Eigen::Index(grid.size[0]) * grid.size[1]};
   for (int axis = 0; axis < 3; ++axis) {

@@ -23,10 +23,14 @@ struct P1Solution {
   double error = 0;    // the greatest residual; above the tolerance where iterations ran out
 };
 
+// Extinction that kappa has at least [1/m], for in a vacuum it would have no end: a depth of 0.03 over the longest side of the box. Throws
+// Error for a grid without cells or without ends.
+double extinction_of_vacuum(const OrdinateGrid&);
+
 class P1Grid {
  public:
-  // extinction: of each node [1/m], >= 0. In a vacuum kappa would have no end: there it is that of a depth of 0.03 over the longest side of
-  // the box. albedo in [0, 1]; g: mean cosine of the phase function. Throws Error for what does not fit or is out of range.
+  // extinction: of each node [1/m], >= 0. albedo in [0, 1]; g: mean cosine of the phase function. Throws Error for what does not fit or is
+  // out of range.
   P1Grid(const OrdinateGrid&, const Eigen::ArrayXd& extinction, double albedo, double g, const P1Options&);
 
   // source: J_ss, order^2 coefficients of each light, one light after another; the first four of each count. before: the radiance of a

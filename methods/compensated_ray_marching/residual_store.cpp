@@ -1,5 +1,7 @@
 #include "methods/compensated_ray_marching/residual_store.h"
 
+#include <cmath>
+
 #include "scene/media/voxel.h"
 
 namespace airlight::compensated_ray_marching {
@@ -43,6 +45,15 @@ StoredResidual::StoredResidual(const scene::Residual& residual, ResidualStore st
     for (const std::int8_t level : levels) grid.values.push_back(float(step_ * level));
     store_ = std::move(grid);
   }
+}
+
+std::vector<std::int8_t> StoredResidual::levels() const {
+  std::vector<std::int8_t> within;
+  for (int z = 0; z < layout_.size[2]; ++z)
+    for (int y = 0; y < layout_.size[1]; ++y)
+      for (int x = 0; x < layout_.size[0]; ++x)
+        within.push_back(std::int8_t(step_ > 0 ? std::lround(at_sample({x, y, z}) / step_) : 0));
+  return with_border(layout_, within);
 }
 
 double StoredResidual::at(const Point3& x) const {

@@ -8,8 +8,8 @@
 
 namespace airlight::compensated_ray_marching {
 
-// grid: decoded once, a float a sample. bricks: in 8 bits, those that hold something, with an apron. hash: in 8 bits, a perfect hash with
-// domain bits, as published; eight look-ups between samples. automatic: grid on a processor, bricks on a device.
+// grid: all samples, decoded once, a float each; on a device 8 bits. bricks: in 8 bits, those that hold something, with an apron. hash: in
+// 8 bits, a perfect hash with domain bits, as published; eight look-ups between samples. automatic: grid on a processor, bricks on a device.
 enum class ResidualStore { automatic, grid, bricks, hash };
 
 // Residual of either sign, trilinear between samples. It is 0 beyond the border; within half a voxel of the border it
@@ -24,6 +24,8 @@ class StoredResidual {
   double step() const { return step_; }
   const scene::VoxelGrid& layout() const { return layout_; }
   Eigen::Vector3i size() const { return layout_.size + Eigen::Vector3i::Constant(2); }
+  // Levels of all samples with this border, x fastest.
+  std::vector<std::int8_t> levels() const;
   // Null: it is stored in another way.
   const scene::ApronBricks* bricks() const { return std::get_if<scene::ApronBricks>(&store_); }
   const scene::PerfectHash* hash() const { return std::get_if<scene::PerfectHash>(&store_); }

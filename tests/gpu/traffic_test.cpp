@@ -57,6 +57,7 @@ DEVICE_TEST_CASE("a warm frame of every GPU method stays on the device", "[gpu][
       {fogmaps, "wavelet_fog/patchy", {{"variant", "paper"}}},
       {fogmaps, "wavelet_fog/valley", {{"sun", "true"}}, true},
       {smoke, "compensated_ray_marching/gaussians_lobe", {{"cells", "12"}}, true},
+      {smoke, "compensated_ray_marching/gaussians_lobe", {{"cells", "12"}, {"multiple", "p1"}}, true},
       {smoke, "compensated_ray_marching/gaussians_lobe", {{"variant", "paper"}, {"iterations", "10"}}, true},
       {smoke, "compensated_ray_marching/plume_and_ball", {{"cells", "12"}, {"levels", "4"}}, true},
   };

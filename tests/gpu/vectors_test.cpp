@@ -63,7 +63,13 @@ DEVICE_TEST_CASE("oracle vectors on the device: compensated ray marching", "[gpu
         "zh_rotation 16 theta_of_d 3 gaussian_optical_depth 16 rbf_zh_optical_depth 21 sh_exponential 45 "
         "single_scattering_source 120 transmittance_environment 38 march_single_scattering 38 "
         "march_compensated 78 ray_march_homogeneous 10 collocation_matrix 16 trilinear_border 48 "
+        "diffusion_uniform_source 2 diffusion_slab_marshak 9 "
         "psh_address 2 hash_round_trip 1731");
+}
+
+DEVICE_TEST_CASE("oracle vectors on the device: diffusion around a point",
+                 "[gpu][verify][compensated_ray_marching][slow][thorough]") {
+  check("compensated_ray_marching", "diffusion_point_source 3");
 }
 
 DEVICE_TEST_CASE("oracle vectors on the device: a ball of smoke with all orders",

@@ -65,7 +65,7 @@ double worst_between(Context& context, const ResidualOnDevice& residual, const V
 
 }  // namespace
 
-DEVICE_TEST_CASE("bricks and hashes decode on the device to the processor's levels", "[gpu][residual]") {
+DEVICE_TEST_CASE("grids, bricks and hashes decode on the device to the processor's levels", "[gpu][residual]") {
   const Use use(context);
   std::uint32_t set = 0;
   for (const Vector3i& size : {Vector3i(1, 1, 1), Vector3i(8, 8, 8), Vector3i(7, 15, 16), Vector3i(33, 9, 20)})
@@ -74,8 +74,10 @@ DEVICE_TEST_CASE("bricks and hashes decode on the device to the processor's leve
       const auto bricks = scene::apron_bricks_of(size, levels);
       const auto hash = scene::perfect_hash(size, scene::hashed_voxels(size, levels));
       INFO(size.transpose() << ", share " << share);
-      const ResidualOnDevice kinds[] = {
-          {context, size, bricks}, {context, size, hash, Membership::tags}, {context, size, hash, Membership::domain}};
+      const ResidualOnDevice kinds[] = {{context, size, levels},
+                                        {context, size, bricks},
+                                        {context, size, hash, Membership::tags},
+                                        {context, size, hash, Membership::domain}};
       for (const ResidualOnDevice& residual : kinds) {
         CHECK(wrong_levels(context, residual, size, levels) == 0);
         // Products and sums of numbers up to 254 along three axes, of a place that is rounded to 2^-23 of up to 64.

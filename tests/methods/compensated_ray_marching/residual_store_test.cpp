@@ -40,6 +40,9 @@ TEST_CASE("stores of a residual: the same everywhere", "[compensated_ray_marchin
           hash(residual, ResidualStore::hash), any(residual, ResidualStore::automatic);
       CHECK(bricks.bricks());
       CHECK(hash.hash());
+      CHECK(grid.levels() == bricks.levels());
+      CHECK(hash.levels() == bricks.levels());
+      if (clamped) CHECK(grid.levels()[0] == levels_of(residual.bricks)[0]);
       int seen = 0;
       for (std::uint32_t i = 0; i < 4000; ++i) {
         const PhiloxCounter w = philox4x32_10({i, 0, 0, 0}, {2008, 3});
