@@ -87,6 +87,10 @@ class Comparing {
   void arrays(const std::string& name, const Array& expected, const Array& got) {
     for (const Comparison& c : largest_differences(name, expected, got, gate())) add(c);
   }
+  // Of the paper's variants, which are in double precision on the device.
+  void arrays_in_double(const std::string& name, const Array& expected, const Array& got, double gate) {
+    for (const Comparison& c : largest_differences(name, expected, got, gate)) add(c);
+  }
   // Entry by entry, relative to a size that may be that of other arrays.
   void entries(const std::string& name, const Array& expected, const Array& got, double size) {
     for (Eigen::Index i = 0; i < expected.size(); ++i)
@@ -139,6 +143,9 @@ void compare_projection(const Value& v, const Array& u, Comparing& out) {
   if (!out.on_device()) out.arrays("div_before", scalar_of(v["div_before"], out.space()), divergence);
   out.of_input(v, "div_norm_before", divergence.norm());
   out.arrays("projection", velocity_of(v, out.space(), "", "_proj"), projected);
+  if (out.on_device())
+    out.arrays_in_double("projection, paper_repaired", velocity_of(v, out.space(), "", "_proj"),
+                         projected_by_paper(out.space(), u), fluid_gate);
   out.of_input(v, "energy_before", out.energy(u));
   out.number(v, "energy_after", out.energy(projected));
   out.zero("divergence after", out->divergence(projected).cwiseAbs().maxCoeff(), 2e-6);
@@ -287,6 +294,9 @@ Check read_legendre_density(const Value& v) {
       next = runge_kutta_4(r, dt, [&](const Array& now) { return out.scalar_advected(w, now); });
     }
     out.arrays("right side", scalar_of(v["rhs"], out.space()), rate);
+    if (out.on_device())
+      out.arrays_in_double("right side, paper", scalar_of(v["rhs"], out.space()), advected_by_paper(out.space(), w, r),
+                           1e-9);
     out.arrays("after the step", scalar_of(v["r_1"], out.space()), next);
     out.of_input(v, "mass_before", to_mass * r[0]);
     out.number(v, "mass_after", to_mass * next[0]);

@@ -11,7 +11,10 @@ layout(std430, binding = AT_STATUS) buffer Status { uint status[]; };
 uniform int first_field, adds, stage, goes_on, ends, begins;
 uniform float dt;                                        // [s] of a step of Runge-Kutta
 uniform vec3 per_area;                                   // half size^-2 of each axis
-uniform float fades, filters_velocity, filters_carried;  // what decay leaves, before the step or after it; rate times time
+uniform float filters_velocity, filters_carried;         // rate times time
+#if SCALARS > 0
+uniform float fades[SCALARS];  // what decay leaves of what is carried, before the step or after it
+#endif
 #if SOURCES * SCALARS > 0
 layout(std430, binding = AT_REGIONS) readonly buffer Regions { float regions[]; };
 uniform float amounts[SOURCES * SCALARS];  // of each source, of each of what is carried
@@ -27,11 +30,18 @@ float added_by_sources(int field, int place) {
   return sum;
 }
 
+float faded(int field) {
+#if SCALARS > 0
+  if (field >= D) return fades[field - D];
+#endif
+  return 1;
+}
+
 // Factor of filters and decay on coefficient (i, j, k) at the end of a step.
 float left_over(int field, int i, int j, int k) {
   float rate = field < D ? filters_velocity : filters_carried;
   float sum = number(TABLE_POWERS, i) + number(TABLE_POWERS, j) + number(TABLE_POWERS, k);
-  return (rate > 0 ? exp(-min(rate * sum, 200)) : 1) * (field < D ? 1 : fades);
+  return (rate > 0 ? exp(-min(rate * sum, 200)) : 1) * faded(field);
 }
 
 // The pressure along z, so that the line is what its column has along y.
@@ -52,7 +62,7 @@ void begin_gradient(int field, int slab) {
 float updated(int field, int slab, int j, int k, float more) {
   int place = slab * SLAB + j * NZ + k, at = field * SIZE + place;
   float value = start[at];
-  if (begins != 0) value = (field < D ? 1 : fades) * value + added_by_sources(field, place);
+  if (begins != 0) value = faded(field) * value + added_by_sources(field, place);
   if (stage >= 0) {
     float rate = rates[at] + more, sum = stage == 0 ? 0 : rates[FIELDS * SIZE + at];
     sum += stage == 1 || stage == 2 ? 2 * rate : rate;

@@ -37,6 +37,11 @@ void ParticlesOnDevice::step(double dt) {
   p.set_double("dt", dt);
   p.set_double("low", problem_.box.lo);
   p.set_double("size", problem_.box.size());
+  if (fluid_.blows()) {
+    p.set("winds[0]", fluid_.wind_before().middle);
+    p.set("winds[1]", fluid_.wind().middle);
+    p.set("wind_slopes", fluid_.wind().slopes);
+  }
   int first = 0;
   for (const scene::ParticleSet& set : problem_.particles) {
     p.set("first", first);

@@ -1,6 +1,6 @@
 // Particles that a fluid on the device carries: they stay there, and move with its steps.
 #pragma once
-#include "gpu/legendre_fluids/confined_fluid.h"
+#include "gpu/legendre_fluids/fluid.h"
 #include "scene/flow/flow_problem.h"
 #include "scene/flow/particle_mover.h"
 

@@ -36,6 +36,7 @@ enum Binding {
   stretches = 5,  // light_cut.comp and what follows it
   ways = 6,
   walked = 7,
+  shades = 4,
   seen = 1,     // light_composition.comp
   targets = 0,  // light_density.comp
   particles = 4,
@@ -45,8 +46,9 @@ enum Binding {
   values = 4,
   direct = 7,
   faces = 2,
-  ray_ends = 4,  // paper_image.comp
+  ray_ends = 8,  // paper_image.comp
   kept = 7,      // paper_density.comp
+  floats = 5,    // paper_fluid_end.comp
   // uniform blocks
   matrices = 0,
   densities = 0,

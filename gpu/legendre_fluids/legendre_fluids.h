@@ -1,5 +1,6 @@
-// Legendre fluids in compute shaders: the variant `galerkin` of methods/legendre_fluids, the same settings, in single precision. The
-// coefficients stay on the device from step to step; what is asked of a flow brings them down once.
+// Legendre fluids in compute shaders: the variants of methods/legendre_fluids, with its settings. `galerkin` is in single precision, the
+// paper's variants are in double precision. The coefficients stay on the device from step to step; what is asked of a flow brings them down
+// once.
 #pragma once
 #include <optional>
 

@@ -24,7 +24,7 @@
 namespace airlight::gpu::legendre_fluids {
 namespace {
 
-using airlight::legendre_fluids::LightRays;
+using airlight::legendre_fluids::LitMedia;
 using airlight::legendre_fluids::LitMedium;
 using airlight::legendre_fluids::RayOptions;
 using airlight::legendre_fluids::with_sky;
@@ -37,6 +37,8 @@ constexpr double least_tolerance = 1e-6;  // that single precision can keep
 constexpr double bent_share = 0.1;        // of it, that may be missed where light has kinks
 constexpr int walked_words = 3;           // of light_rays.comp
 constexpr int first_rounds = 16, most_rounds = 8192;
+// Iterations of loops of shadow rays in a round, about: eight rays share llvmpipe's limit.
+constexpr int software_budget = 3000, hardware_budget = 1 << 30;
 
 // The range of the depth over a panel, up to which that many points miss no more than the tolerance: coefficients of exp(-r z) are at most
 // 2 (r/2)^k / k!.
@@ -59,8 +61,9 @@ class PreparedLightGpu final : public scene::Prepared, public TakesDensity {
   }
 
  private:
-  void follow_round(const View&, int round) const;
+  void follow_round(const View&, int round, bool shadowed) const;
   bool negative() const { return media_ && media_->negative(); }
+  bool shadowed() const { return shadows_ != nullptr; }
   bool any_medium() const { return !lit_.media.empty(); }
   bool scatters() const;
   bool ambient() const { return scene_->ambient_in_scatter.maxCoeff() > 0 && any_medium(); }
@@ -77,8 +80,10 @@ class PreparedLightGpu final : public scene::Prepared, public TakesDensity {
   std::unique_ptr<FirstHits> first_hits_;      // null: no surface ends a ray
   std::unique_ptr<Backdrops> backdrops_;       // null: there are none
   std::unique_ptr<wavelet_fog::SurfaceLight> surfaces_;
-  Program *rays_ = nullptr, *dim_ = nullptr, *composition_ = nullptr, *cut_ = nullptr, *columns_ = nullptr;
-  mutable int rounds_ = first_rounds;  // of stretches, where a density may be below 0
+  Program *rays_ = nullptr, *dim_ = nullptr, *composition_ = nullptr, *cut_ = nullptr, *columns_ = nullptr,
+          *shadows_ = nullptr;
+  std::vector<bool> shadowed_;         // by light: may surfaces stand before it
+  mutable int rounds_ = first_rounds;  // of stretches, where a density may be below 0 or surfaces may shade a ray
   double negative_share_ = 0;
   mutable Frame frame_;
   std::vector<scene::StageTime> times_;
@@ -101,6 +106,10 @@ PreparedLightGpu::PreparedLightGpu(std::shared_ptr<const Scene> scene, const Ray
   if (any_medium()) {
     media_ = std::make_unique<LightMediaOnDevice>(context_, lit_, options_);
     definitions = media_->definitions();
+    shadowed_ = shadowed_lights(*scene_, lit_);
+    const bool any_shadow = scatters() && std::find(shadowed_.begin(), shadowed_.end(), true) != shadowed_.end();
+    definitions["SHADOWED"] = std::to_string(int(any_shadow));
+    if (any_shadow) shadows_ = &program(context_, "light_shadows", ray_tile, ray_tile, definitions);
     rays_ = &program(context_, "light_rays", ray_tile, ray_tile, definitions);
     if (wavelet_fog::lamps_light_surfaces(*scene_))
       dim_ = &program(context_, "light_dim", ray_tile, ray_tile, definitions);
@@ -126,24 +135,26 @@ std::vector<scene::Stage> PreparedLightGpu::stages() const {
   const std::string dark = scene::why_nothing_scatters(*scene_);
   const std::string why = !any_medium() ? "no medium extinguishes" : dark.empty() ? "no medium scatters" : dark;
   const bool ends = first_hits_ != nullptr, lit = surfaces_->shines();
-  return {{"distances", ends, ends ? "where camera rays end" : "nothing ends a ray"},
-          {"backdrops", bool(backdrops_), backdrops_ ? "where they end camera rays" : "there are none"},
-          {"rays", any_medium(),
-           negative()     ? "a stretch of every ray in each round, until all are done"
-           : scatters()   ? fmt::format("{} dispatches for each of {} lights, a stretch of every ray each",
-                                        media_->stretches(), lit_.lights.size())
-           : any_medium() ? "columns alone"
-                          : why},
-          {"airlight", scatters(), scatters() ? "along the rays" : why},
-          {"clamping", negative(),
-           negative() ? fmt::format("a density is below 0 in {:.2g} of its box, and taken as 0", negative_share_)
-                      : "no density is below 0"},
-          {"surfaces", lit, lit ? "lights through the media, background" : "no surface is lit, no background"},
-          {"environment as a light", scene::has_environment(*scene_) && !lit_.lights.empty(),
-           !scene::has_environment(*scene_) ? "no environment"
-           : lit_.lights.empty()            ? "nothing scatters, no surface is lit: only the background is drawn"
-                                            : fmt::format("{} directions", options_.environment_directions)},
-          {"composition", true, "layers of the film"}};
+  return {
+      {"distances", ends, ends ? "where camera rays end" : "nothing ends a ray"},
+      {"backdrops", bool(backdrops_), backdrops_ ? "where they end camera rays" : "there are none"},
+      {"rays", any_medium(),
+       negative() || shadowed() ? "a stretch of every ray in each round, until all are done"
+       : scatters()             ? fmt::format("{} dispatches for each of {} lights, a stretch of every ray each",
+                                              media_->stretches(), lit_.lights.size())
+       : any_medium()           ? "columns alone"
+                                : why},
+      {"airlight", scatters(), scatters() ? "along the rays" : why},
+      {"clamping", negative(),
+       negative() ? fmt::format("a density is below 0 in {:.2g} of its box, and taken as 0", negative_share_)
+                  : "no density is below 0"},
+      {"shadows", shadowed(), shadowed() ? "surfaces may stand before a light" : "no surface stands before a light"},
+      {"surfaces", lit, lit ? "lights through the media, background" : "no surface is lit, no background"},
+      {"environment as a light", scene::has_environment(*scene_) && !lit_.lights.empty(),
+       !scene::has_environment(*scene_) ? "no environment"
+       : lit_.lights.empty()            ? "nothing scatters, no surface is lit: only the background is drawn"
+                                        : fmt::format("{} directions", options_.environment_directions)},
+      {"composition", true, "layers of the film"}};
 }
 
 // Every ray, under one light after the other, to its end: columns and airlight.
@@ -167,13 +178,26 @@ void PreparedLightGpu::follow(const View& view, const Buffer* distances, std::si
     p.set(fmt::format("phase_g[{}]", m), hg ? hg->g : 0.0);
   }
   const std::size_t lights = scatters() ? lit_.lights.size() : 0;
-  if (negative()) {
-    frame_.buffers.get("stretches", 16 * pixels).bind(at::stretches);
-    frame_.buffers.get("ways", 4 * pixels * lit_.media.size() * std::size_t(media_->series())).bind(at::ways);
+  if (negative() || shadowed()) {
     Buffer& walked = frame_.buffers.get("walked", 4 * std::size_t(walked_words));
     walked.clear();
     walked.bind(at::walked);
     frame_.download.add_status("walked", walked, walked.bytes());
+  }
+  if (shadowed()) {
+    frame_.buffers.get("shades", 32 * pixels).bind(at::shades);
+    first_hits_->surfaces().bind();
+    first_hits_->tree().bind(*shadows_);
+    set_view(*shadows_, view);
+    shadows_->set("triangle_count", first_hits_->surfaces().triangles());
+    shadows_->set("loop_count", 3);
+    shadows_->set("has_distances", distances != nullptr);
+    shadows_->set("shadow_steps", options_.shadow_steps);
+    shadows_->set("budget", context_.software() ? software_budget : hardware_budget);
+  }
+  if (negative()) {
+    frame_.buffers.get("stretches", 16 * pixels).bind(at::stretches);
+    frame_.buffers.get("ways", 4 * pixels * lit_.media.size() * std::size_t(media_->series())).bind(at::ways);
     p.set("bent", bent_share * std::max(options_.tolerance, least_tolerance));
     set_view(*cut_, view);
     set_view(*columns_, view);
@@ -190,23 +214,30 @@ void PreparedLightGpu::follow(const View& view, const Buffer* distances, std::si
     p.set("has_light", lights > 0);
     p.set("first_light", l == 0);
     p.set("irradiance", lights > 0 ? lit_.lights[l].irradiance : Rgb(Rgb::Zero()));
-    const int rounds = negative() ? rounds_ : media_->stretches();
-    for (int round = 0; round < rounds; ++round)
-      if (negative()) {
-        follow_round(view, round);
-      } else {
-        p.set("begins", round == 0);
-        p.dispatch(view.width, view.height);
-      }
+    const bool shadowed = this->shadowed() && shadowed_[l];
+    if (shadowed) media_->bind(*shadows_, lit_.lights[l].to_light);
+    const int rounds = negative() || shadowed ? rounds_ : media_->stretches();
+    for (int round = 0; round < rounds; ++round) follow_round(view, round, shadowed);
   }
 }
 
-// Where a density may be below 0: the next stretch of each ray, light at its points, what it sends.
-void PreparedLightGpu::follow_round(const View& view, int round) const {
-  cut_->set("begins", round == 0);
-  cut_->dispatch(view.width, view.height);
-  if (scatters()) columns_->dispatch(int(lit_.media.size()) * media_->series() * view.width, view.height);
-  rays_->set("round", round);
+// The next stretch of each ray. Where surfaces may shade it, its next edge first; where a density may be below 0, its end and the light at
+// its points first.
+void PreparedLightGpu::follow_round(const View& view, int round, bool shadowed) const {
+  if (shadowed) {
+    shadows_->set("begins", round == 0);
+    shadows_->dispatch(view.width, view.height);
+  }
+  if (negative()) {
+    cut_->set("begins", round == 0);
+    if (this->shadowed()) cut_->set("has_shadow", shadowed);
+    cut_->dispatch(view.width, view.height);
+    if (scatters()) columns_->dispatch(int(lit_.media.size()) * media_->series() * view.width, view.height);
+  } else {
+    rays_->set("begins", round == 0);
+  }
+  if (this->shadowed()) rays_->set("has_shadow", shadowed);
+  if (negative() || this->shadowed()) rays_->set("round", round);
   rays_->dispatch(view.width, view.height);
 }
 
@@ -324,10 +355,7 @@ std::vector<std::string> LegendreLight::supports(const Scene& scene, const scene
     for (const std::string& reason : unsupported_paper(scene, options.paper)) reasons.push_back(reason);
   if (!reasons.empty() || options.variant == airlight::legendre_fluids::LightOptions::Variant::paper) return reasons;
   const auto lit = with_sky({std::shared_ptr<const Scene>(), &scene}, options.ray);
-  const LightRays rays(*lit, options.ray);
-  for (const std::string& reason : unsupported(rays.media())) reasons.push_back(reason);
-  if (rays.shadowed())
-    reasons.push_back("surfaces that may stand between a light and a medium: shaders know no shadows within media");
+  for (const std::string& reason : unsupported(LitMedia(*lit, 0))) reasons.push_back(reason);
   return reasons;
 }
 
@@ -336,7 +364,7 @@ std::unique_ptr<scene::Prepared> LegendreLight::prepare_supported(std::shared_pt
                                                                   const Execution&) const {
   const airlight::legendre_fluids::LightOptions options = airlight::legendre_fluids::read_light_options(settings);
   if (options.variant == airlight::legendre_fluids::LightOptions::Variant::paper)
-    return prepare_paper(std::move(scene), options.paper, settings.canonical());
+    if (auto prepared = prepare_paper(scene, options.paper, settings.canonical())) return prepared;
   return std::make_unique<PreparedLightGpu>(with_sky(std::move(scene), options.ray), options.ray, settings.canonical());
 }
 

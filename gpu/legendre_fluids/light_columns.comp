@@ -13,7 +13,7 @@ void main() {
   if (pixel.x >= view_width || pixel.y >= view_height) return;
   int m = point / SERIES, q = point % SERIES, place = pixel.y * view_width + pixel.x;
   double last = reached[place], next = stretches[place].x;
-  if (next >= nowhere) return;
+  if (next >= nowhere || next < 0) return;
   dvec3 origin, direction;
   view_ray(dvec2(pixel) + 0.5LF, origin, direction);
   dvec3 local = (origin + 0.5LF * (last + next) * direction - box_middle[m]) * per_half[m];

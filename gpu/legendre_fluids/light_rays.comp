@@ -1,7 +1,8 @@
 // Light that a camera ray collects by one scattering under one light, a ray per invocation: methods/legendre_fluids/light_rays.cpp. A
 // dispatch takes each ray on by one stretch, between two cuts, in which density and depths are polynomials; what it leaves for the next
 // lies in buffers by pixel. With NEGATIVE, light_cut.comp says where the stretch ends and light_columns.comp what light reaches it; where
-// its kinks are no polynomial, the next round tries half of it.
+// its kinks are no polynomial, the next round tries half of it. With SHADOWED, light_shadows.comp says where surfaces shade the ray, which
+// waits where that is not known yet.
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "raster/view.glsl"
 #include "common/loops_cut.glsl"
@@ -15,21 +16,32 @@ layout(std430, binding = AT_AIRLIGHT_LAYER) buffer Airlight { float airlight[]; 
 #if NEGATIVE
 layout(std430, binding = AT_STRETCHES) buffer Stretches { dvec2 stretches[]; };  // of light_cut.comp
 layout(std430, binding = AT_WAYS) readonly buffer Ways { float ways[]; };        // of light_columns.comp
+uniform float bent;                     // depth that may be missed where it has kinks
+const float least_stretch = 1. / 4096;  // of half a box
+float missed, missed_share;             // depth towards the light, of the medium where it is the most; over what may be
+#endif
+#if SHADOWED
+#include "legendre_fluids/light_shade.glsl"
+uniform int has_shadow;  // may surfaces stand before the light
+#endif
+#if NEGATIVE || SHADOWED
 layout(std430, binding = AT_WALKED) buffer Walked {
   uint rounds;            // in which a ray still had a stretch
   uint at_limit;          // stretches that were not halved any more, though light has kinks in them
   uint most_missed_bits;  // greatest depth that the last orders of one of those had: a float
 };
 uniform int round;
-uniform float bent;                   // depth that may be missed where it has kinks
-const float least_stretch = 1. / 4096;  // of half a box
-float missed, missed_share;           // depth towards the light, of the medium where it is the most; over what may be
+// The ray still has a stretch in this round.
+void note_round() {
+  if (rounds <= uint(round)) atomicMax(rounds, uint(round) + 1u);
+}
 #endif
 uniform int has_distances, begins, has_light, first_light;
 uniform int phase_kind[MEDIA];
 uniform float phase_g[MEDIA];
 uniform vec3 irradiance;
 uniform float tolerance, widest;  // widest: range of the depth over a panel
+int lit_here;                     // does light reach the stretch
 const int most_halvings = 22;
 
 // Series over the stretch: of each medium the depth towards eye and light [m], the density.
@@ -52,14 +64,14 @@ float expand(int m, dvec3 middle, dvec3 direction, float half_length, bool withi
   dvec3 local = (middle - box_middle[m]) * per_half[m];
   vec3 at = vec3(local);
   Way way = way_from(local, rate);
-  if (has_light == 0) way.lit = false;
+  if (lit_here == 0) way.lit = false;
   vec4 d[SERIES_FOURS], c[SERIES_FOURS];
   for (int b = 0; b < SERIES_FOURS; ++b) d[b] = c[b] = vec4(0);
   for (int q = 0; q < SERIES; ++q) {
     vec3 place = at + rule[RULE_NODES + q / 4][q % 4] * slope;
     float density = within ? max(density_at(m, place), 0) : 0;
 #if NEGATIVE
-    float column = has_light != 0 ? ways[at_way + q] : 0;
+    float column = lit_here != 0 ? ways[at_way + q] : 0;
 #else
     float column = column_from(m, place, rate, way);
 #endif
@@ -166,13 +178,32 @@ void main() {
   view_ray(dvec2(pixel) + 0.5LF, origin, direction);
 #if NEGATIVE
   double last = reached[place], next = stretches[place].x;
-  bool any = next < nowhere;
+  bool any = next < nowhere, waits = next < 0;  // for the edge of a shadow
 #else
   double last = begins != 0 ? 0 : reached[place], next = nowhere;
   if (begins != 0) begin(place);
   if (last >= nowhere) return;
   double end = has_distances != 0 ? double(distances[place]) : nowhere;
-  bool any = next_stretch(origin, direction, end, last, next);
+  bool any = true, waits = false;
+#if SHADOWED
+  waits = has_shadow != 0 && (shades[place].flags & shade_waits) != 0;
+#endif
+  if (!waits) any = next_stretch(origin, direction, end, last, next);
+#if SHADOWED
+  if (has_shadow != 0 && any && !waits) waits = !cut_by_shade(place, last, next);
+#endif
+#endif
+#if SHADOWED
+  if (waits) {
+    reached[place] = last;
+    note_round();
+    return;
+  }
+#endif
+  lit_here = has_light;
+#if SHADOWED
+  if (has_shadow != 0 && (shades[place].flags & shade_lit) == 0) lit_here = 0;
+  if (has_shadow != 0 && any) note_round();
 #endif
   if (any) {
     dvec3 middle = origin + 0.5LF * (last + next) * direction;
@@ -180,7 +211,7 @@ void main() {
     double cosine = dot(to_light, direction);
 #if NEGATIVE
     missed = missed_share = 0;
-    if (rounds <= uint(round)) atomicMax(rounds, uint(round) + 1u);
+    note_round();
 #endif
     source_noise = vec3(0);
     for (int m = 0; m < MEDIA; ++m) {
@@ -200,9 +231,13 @@ void main() {
 #endif
     for (int m = 0; m < MEDIA; ++m) columns[place * MEDIA + m] = after[m];
     vec3 before = vec3(airlight[3 * place], airlight[3 * place + 1], airlight[3 * place + 2]);
-    if (has_light != 0) {
+    if (lit_here != 0) {
       vec3 sum = before + irradiance * half_length * integral(abs(before) / max(abs(irradiance) * half_length, vec3(1e-30)));
-      if (loops_cut()) sum = vec3(uintBitsToFloat(0x7fc00000u));  // no number, rather than a wrong one
+      bool broken = loops_cut();
+#if SHADOWED
+      broken = broken || (has_shadow != 0 && (shades[place].flags & shade_broken) != 0);
+#endif
+      if (broken) sum = vec3(uintBitsToFloat(0x7fc00000u));  // no number, rather than a wrong one
       for (int c = 0; c < 3; ++c) airlight[3 * place + c] = sum[c];
     }
   }

@@ -8,7 +8,6 @@ int of_density = 0;                                                        // wh
 layout(std430, binding = AT_WORK) coherent buffer Work { double work[]; };
 uniform double sigma_t[SYSTEMS];  // [1/m]
 uniform int directions[SYSTEMS];  // of the light that a system is about
-#define lane int(gl_LocalInvocationID.x)
 #define system int(gl_WorkGroupID.x)
 #define base (system * STRIDE)
 #define direction_at (DIRECTIONS_AT + directions[system] * DIRECTION_STRIDE)
@@ -20,42 +19,12 @@ uniform int directions[SYSTEMS];  // of the light that a system is about
 #define DONE SCALARS_OF(3)
 const double lost = 1e300LF;
 bool is_number(double size) { return size >= 0 && size < lost; }  // of what is no less than 0
-shared double partial[LOCAL_SIZE_X];
-
-void together() {
-  memoryBarrierBuffer();
-  barrier();
-}
-
-// Sum over all lanes, returned to all of them.
-double total(double mine) {
-  partial[lane] = mine;
-  barrier();
-  for (int half_ = LOCAL_SIZE_X / 2; half_ > 0; half_ /= 2) {
-    if (lane < half_) partial[lane] += partial[lane + half_];
-    barrier();
-  }
-  double sum = partial[0];
-  barrier();
-  return sum;
-}
+#include "legendre_fluids/tensors.glsl"
 
 double dot_of(int a, int b) {
   double sum = 0;
   for (int e = lane; e < UNKNOWNS; e += LOCAL_SIZE_X) sum += work[a + e] * work[b + e];
   return total(sum);
-}
-
-// Along one axis of [outer][columns][inner]: entry (r, k) of the matrix is tables[table + r steps.x + k steps.y].
-void transform(int table, ivec2 steps, int rows, int columns, int outer, int inner, int from, int to) {
-  int all = outer * rows * inner;
-  for (int e = lane; e < all; e += LOCAL_SIZE_X) {
-    int i = e % inner, r = e / inner % rows, first = from + e / (inner * rows) * columns * inner + i, at = table + r * steps.x;
-    double sum = 0;
-    for (int k = 0; k < columns; ++k) sum += tables[at + k * steps.y] * work[first + k * inner];
-    work[to + e] = sum;
-  }
-  together();
 }
 
 // Transforms coefficients of any shape to the points. The result is in `one`; `two` is overwritten.

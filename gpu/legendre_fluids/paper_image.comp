@@ -1,14 +1,18 @@
 // Radiance that leaves the medium towards the camera: the series of the face where a ray enters, eq. 24; of a camera within, that of all.
-// With ENDS backdrops and particles end rays: methods/legendre_fluids/paper_view.h.
+// With ENDS surfaces, backdrops and particles end rays: methods/legendre_fluids/paper_view.h.
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "raster/view.glsl"
+#if ENDS
+#include "wavelet_fog/lit.glsl"
+uniform int has_ends, has_lit, has_seen;
+#endif
 layout(std430, binding = AT_FACES) readonly buffer Faces { float faces[]; };  // of paper_kept.comp
 layout(std430, binding = AT_AIRLIGHT_LAYER) writeonly buffer Airlight { float airlight[]; };
 layout(std430, binding = AT_MEAN_LAYER) writeonly buffer Mean { float mean_layer[]; };
 layout(std430, binding = AT_STATUS) buffer Status { uint counts[]; };  // rays that meet the box, those below 0
 #if ENDS
 layout(std430, binding = AT_RAY_ENDS) readonly buffer Ends { float ends[]; };  // [m] along rays
-layout(std430, binding = AT_SEEN) readonly buffer Seen { float seen[]; };      // there [W/m^2/sr]; -1: nothing
+layout(std430, binding = AT_SEEN) readonly buffer Seen { float seen[]; };      // of backdrops [W/m^2/sr]; -1: none
 layout(std430, binding = AT_TRANSMITTANCE_LAYER) writeonly buffer Transmittance { float transmittance[]; };
 layout(std430, binding = AT_SURFACE_LAYER) writeonly buffer Surface { float surface[]; };
 uniform vec3 sigma_t;                                 // [1/m]
@@ -108,7 +112,8 @@ void main() {
     vec3 value, left;
     double end = 1e300LF;
 #if ENDS
-    end = ends[place / 3];
+    if (has_ends != 0) end = ends[place / 3];
+    vec3 there = has_lit != 0 ? lit[place / 3].reflected.rgb + lit[place / 3].sum.rgb : vec3(0);
 #endif
     if (radiance(origin, direction, end, value, left)) {
       atomicAdd(met, 1u);
@@ -117,7 +122,7 @@ void main() {
     for (int c = 0; c < 3; ++c) {
       float behind = 0;
 #if ENDS
-      behind = left[c] * max(seen[place + c], 0);
+      behind = left[c] * (has_seen != 0 && seen[place + c] >= 0 ? seen[place + c] : there[c]);
       transmittance[place + c] = left[c];
       surface[place + c] = behind;
 #endif

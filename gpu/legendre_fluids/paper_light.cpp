@@ -306,6 +306,12 @@ std::vector<Eigen::VectorXd> PaperSystems::direct() const {
   return all;
 }
 
+std::array<int, 3> PaperSystems::first_of_direct(std::size_t light) const {
+  std::array<int, 3> first;
+  for (std::size_t c = 0; c < 3; ++c) first[c] = (int(light * extinctions_.size()) + extinction_of_[c]) * unknowns();
+  return first;
+}
+
 void PaperSystems::solve(Kind& kind, Frame& frame) {
   start(kind);
   run(kind, kind.rounds);

@@ -41,6 +41,9 @@ class PaperSystems {
 
   // E_s towards the camera, for each channel, and the density: input of paper_image.comp.
   const Buffer& faces() const { return *faces_; }
+  // E_d for paper_dim.comp, and where its series of a light begins for each channel.
+  const Buffer& direct_values() const { return *direct_values_; }
+  std::array<int, 3> first_of_direct(std::size_t light) const;
   const Definitions& definitions() const { return definitions_; }
   std::array<int, 3> system_of() const { return system_of_; }
   Rgb scale() const { return scale_; }

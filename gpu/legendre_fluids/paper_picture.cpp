@@ -9,6 +9,7 @@
 #include "gpu/legendre_fluids/paper_light.h"
 #include "gpu/raster/backdrops.h"
 #include "gpu/view_uniforms.h"
+#include "gpu/wavelet_fog/surface_light.h"
 #include "methods/legendre_fluids/lit_media.h"
 #include "methods/legendre_fluids/paper_picture.h"
 #include "scene/base/error.h"
@@ -41,6 +42,11 @@ void define_columns(const scene::TensorShape& density, bool ends, Definitions& d
   definitions["WEIGHTS"] = fmt::format("float[]({})", fmt::join(weights, ", "));
 }
 
+// Can anything be seen behind the medium, or in it.
+bool ends_rays(const Scene& scene) {
+  return scene.geometry != nullptr || !scene.backdrops.empty() || scene::has_environment(scene);
+}
+
 class PreparedPaperGpu final : public scene::Prepared, public TakesDensity {
  public:
   PreparedPaperGpu(std::shared_ptr<const Scene>, const airlight::legendre_fluids::PaperOptions&, std::string settings);
@@ -50,7 +56,13 @@ class PreparedPaperGpu final : public scene::Prepared, public TakesDensity {
   bool take(const DensityOnDevice&) override;
 
  private:
-  void draw(const View&) const;
+  // Where rays end, and what they see there.
+  struct Ends {
+    const Buffer *distances = nullptr, *seen = nullptr, *lit = nullptr;
+  };
+  Ends find_ends(const View&) const;
+  void dim(const View&, const scene::Light&) const;
+  void draw(const View&, const Ends&) const;
   std::map<std::string, double> counters() const;
 
   std::shared_ptr<const Scene> scene_;
@@ -61,9 +73,11 @@ class PreparedPaperGpu final : public scene::Prepared, public TakesDensity {
   scene::LegendrePointer field_;  // of those; null where nothing extinguishes
   std::vector<scene::DirectionalLight> lights_;
   std::array<bool, 3> moving_;
-  std::unique_ptr<PaperSystems> systems_;  // null: no light scatters
-  std::unique_ptr<Backdrops> backdrops_;   // null: there are none
-  Program* image_ = nullptr;
+  std::unique_ptr<PaperSystems> systems_;                // null: no light scatters
+  std::unique_ptr<FirstHits> first_hits_;                // null: no surface ends a ray
+  std::unique_ptr<Backdrops> backdrops_;                 // null: there are none
+  std::unique_ptr<wavelet_fog::SurfaceLight> surfaces_;  // null: nothing can be seen behind the medium
+  Program *image_ = nullptr, *dim_ = nullptr;
   double negative_direct_ = 0;
   bool flows_ = false;          // the density is a flow's
   mutable bool stale_ = false;  // E_d is of another density
@@ -81,18 +95,25 @@ PreparedPaperGpu::PreparedPaperGpu(std::shared_ptr<const Scene> scene,
       frame_(context_) {
   for (const scene::Light& light : scene_->lights)
     if (const auto* sun = std::get_if<scene::DirectionalLight>(&light);
-        sun && (scatter(scene_->media, light) || (!scene_->backdrops.empty() && scene::shines(light))))
+        sun && (scatter(scene_->media, light) || (ends_rays(*scene_) && scene::shines(light))))
       lights_.push_back(*sun);
   media_ = airlight::legendre_fluids::paper_medium(*scene_);
   field_ = media_.density;
+  // Where no light shines, one without colour: columns are part of the systems' picture.
+  if (lights_.empty() && ends_rays(*scene_)) lights_.push_back({-scene_->camera.forward, Rgb::Zero()});
   if (!field_ || lights_.empty()) return;
   const Use use(context_);
   StageTimer timer(context_);
   timer.begin("upload");
   systems_ = std::make_unique<PaperSystems>(context_, media_, lights_, options_, moving_);
-  if (!scene_->backdrops.empty()) backdrops_ = std::make_unique<Backdrops>(context_, *scene_);
   Definitions definitions = systems_->definitions();
-  define_columns(field_->shape(), bool(backdrops_), definitions);
+  if (ends_rays(*scene_)) {
+    if (wavelet_fog::something_ends_rays(*scene_)) first_hits_ = std::make_unique<FirstHits>(context_, *scene_);
+    if (!scene_->backdrops.empty()) backdrops_ = std::make_unique<Backdrops>(context_, *scene_);
+    surfaces_ = std::make_unique<wavelet_fog::SurfaceLight>(context_, *scene_, first_hits_.get());
+    if (wavelet_fog::lamps_light_surfaces(*scene_)) dim_ = &program(context_, "paper_dim", tile, tile, definitions);
+  }
+  define_columns(field_->shape(), bool(surfaces_), definitions);
   image_ = &program(context_, "paper_image", tile, tile, definitions);
   timer.begin("direct systems");
   systems_->begin();
@@ -116,7 +137,10 @@ std::vector<scene::Stage> PreparedPaperGpu::stages() const {
            media_.scattering[0] ? "a field: of several densities in one box" : "the same everywhere"},
           {"image", kept, kept ? "coefficients of the faces towards the camera" : why},
           {"clamping", kept, kept ? "negative radiance is taken as 0" : why},
-          {"backdrops", bool(backdrops_), backdrops_ ? "where they end camera rays" : "there are none"}};
+          {"backdrops", bool(backdrops_), backdrops_ ? "where they end camera rays" : "there are none"},
+          {"surfaces", surfaces_ && surfaces_->shines(),
+           surfaces_ && surfaces_->shines() ? "lights through the medium, background"
+                                            : "no surface is lit, no background"}};
 }
 
 bool PreparedPaperGpu::take(const DensityOnDevice& density) {
@@ -126,15 +150,58 @@ bool PreparedPaperGpu::take(const DensityOnDevice& density) {
   return true;
 }
 
-void PreparedPaperGpu::draw(const View& view) const {
+PreparedPaperGpu::Ends PreparedPaperGpu::find_ends(const View& view) const {
+  Ends ends;
+  if (!surfaces_) return ends;
+  const std::size_t pixels = std::size_t(view.width) * std::size_t(view.height);
+  const Buffer* primitives = nullptr;
+  if (first_hits_ || backdrops_) ends.distances = &frame_.buffers.get("ends", 4 * pixels);
+  if (first_hits_) {
+    primitives = &frame_.buffers.get("primitives", 4 * pixels);
+    first_hits_->find(view, *ends.distances, primitives);
+  }
+  if (backdrops_) {
+    ends.seen = &frame_.buffers.get("seen", 12 * pixels);
+    backdrops_->find(view, *ends.distances, bool(first_hits_), *ends.seen);
+  }
+  if (!surfaces_->shines()) return ends;
+  ends.lit = &frame_.buffers.get("lit", sizeof(wavelet_fog::LitData) * pixels);
+  surfaces_->render(*scene_, view, primitives, *ends.lit, [&](const scene::Light& light) { dim(view, light); });
+  return ends;
+}
+
+void PreparedPaperGpu::dim(const View& view, const scene::Light& light) const {
+  const auto* sun = std::get_if<scene::DirectionalLight>(&light);
+  const auto alike = [&](const scene::DirectionalLight& l) {
+    return l.to_light == sun->to_light && (l.irradiance == sun->irradiance).all();
+  };
+  const auto found = sun ? std::find_if(lights_.begin(), lights_.end(), alike) : lights_.end();
+  if (found == lights_.end()) return;  // it does not shine
+  const std::array<int, 3> first = systems_->first_of_direct(std::size_t(found - lights_.begin()));
+  Program& p = *dim_;
+  frame_.buffers.get("lit", sizeof(wavelet_fog::LitData) * std::size_t(view.width) * std::size_t(view.height))
+      .bind(at::lit);
+  systems_->direct_values().bind(at::direct);
+  set_view(p, view);
+  p.set_double("to_light", sun->to_light);
+  p.set_double("box_low", field_->box().lo);
+  p.set_double("box_high", field_->box().hi);
+  for (std::size_t c = 0; c < 3; ++c) p.set(at_index("first", c), first[c]);
+  p.dispatch(view.width, view.height);
+}
+
+void PreparedPaperGpu::draw(const View& view, const Ends& ends) const {
   const std::size_t pixels = std::size_t(view.width) * std::size_t(view.height);
   Program& p = *image_;
   std::vector<std::pair<const char*, int>> all{{"mean", at::mean_layer}, {"airlight", at::airlight_layer}};
-  if (backdrops_) {
-    const Buffer &ends = frame_.buffers.get("ends", 4 * pixels), &seen = frame_.buffers.get("seen", 12 * pixels);
-    backdrops_->find(view, ends, false, seen);
-    ends.bind(at::ray_ends);
-    seen.bind(at::seen);
+  if (surfaces_) {
+    const Buffer& unused = systems_->faces();
+    (ends.distances ? *ends.distances : unused).bind(at::ray_ends);
+    (ends.seen ? *ends.seen : unused).bind(at::seen);
+    (ends.lit ? *ends.lit : unused).bind(at::lit);
+    p.set("has_ends", ends.distances != nullptr);
+    p.set("has_seen", ends.seen != nullptr);
+    p.set("has_lit", ends.lit != nullptr);
     all.insert(all.end(), {{"surface", at::surface_layer}, {"transmittance", at::transmittance_layer}});
     p.set("sigma_t", media_.medium->sigma_t);
   }
@@ -182,8 +249,10 @@ scene::Rendering PreparedPaperGpu::render(const View& view, const Execution& exe
       }
       frame_.timer.begin("scattered systems");
       systems_->solve_scattered(frame_, -view.camera.forward);
+      if (surfaces_) frame_.timer.begin("surfaces");
+      const Ends ends = find_ends(view);
       frame_.timer.begin("image");
-      draw(view);
+      draw(view, ends);
     } else {
       for (const char* layer : {"mean", "airlight"}) {
         frame_.buffers.get(layer, 12 * pixels).clear();
@@ -206,32 +275,22 @@ scene::Rendering PreparedPaperGpu::render(const View& view, const Execution& exe
 
 namespace {
 
-// The systems are what columns are made beside.
-void object_to_backdrops(const Scene& scene, std::vector<std::string>& reasons) {
-  const bool shines = std::any_of(scene.lights.begin(), scene.lights.end(), [](const scene::Light& light) {
-    const auto* sun = std::get_if<scene::DirectionalLight>(&light);
-    return sun && sun->irradiance.maxCoeff() > 0;
-  });
-  const auto medium =
-      std::find_if(scene.media.begin(), scene.media.end(), [](const scene::Medium& m) { return extinguishes(m); });
-  if (!shines || medium == scene.media.end())
-    reasons.push_back(
-        "variant = paper with backdrops or particles where no medium is lit: shaders have no systems there");
-  else if (const auto* field = std::get_if<scene::LegendrePointer>(&medium->field);
-           field && column_points((*field)->shape()) * scene::tensor_size((*field)->shape()) > most_loops)
-    reasons.push_back(
-        fmt::format("variant = paper with backdrops or particles in a density of {} coefficients: shaders add "
-                    "up columns of fewer, about {}",
-                    scene::tensor_size((*field)->shape()), 2500));
+void object_to_columns(const Scene& scene, std::vector<std::string>& reasons) {
+  for (const scene::Medium& medium : scene.media)
+    if (const auto* field = std::get_if<scene::LegendrePointer>(&medium.field);
+        field && extinguishes(medium) &&
+        column_points((*field)->shape()) * scene::tensor_size((*field)->shape()) > most_loops)
+      reasons.push_back(
+          fmt::format("variant = paper with surfaces, backdrops or particles in a density of {} coefficients: shaders "
+                      "add up columns of fewer, about {}, for llvmpipe's limit on loops",
+                      scene::tensor_size((*field)->shape()), 2500));
 }
 
 }  // namespace
 
 std::vector<std::string> unsupported_paper(const Scene& scene, const airlight::legendre_fluids::PaperOptions& options) {
   std::vector<std::string> reasons;
-  if (!scene.surfaces.empty() || scene::has_environment(scene))
-    reasons.push_back("variant = paper with surfaces or an environment: shaders know backdrops and particles alone");
-  if (!scene.backdrops.empty()) object_to_backdrops(scene, reasons);
+  if (ends_rays(scene)) object_to_columns(scene, reasons);
   if (options.n > most_intensities)
     reasons.push_back(fmt::format("variant = paper with n = {}: shaders take up to {} coefficients along an axis",
                                   options.n, most_intensities));
@@ -245,6 +304,7 @@ std::vector<std::string> unsupported_paper(const Scene& scene, const airlight::l
 std::unique_ptr<scene::Prepared> prepare_paper(std::shared_ptr<const Scene> scene,
                                                const airlight::legendre_fluids::PaperOptions& options,
                                                const std::string& settings) {
+  if (ends_rays(*scene) && !airlight::legendre_fluids::paper_medium(*scene).density) return nullptr;
   return std::make_unique<PreparedPaperGpu>(std::move(scene), options, settings);
 }
 

@@ -18,7 +18,8 @@ class TakesDensity {
 // Why shaders cannot do what the CPU's variant can; empty if they can.
 std::vector<std::string> unsupported_paper(const scene::Scene&, const airlight::legendre_fluids::PaperOptions&);
 
-// Throws Error where a system does not converge.
+// Null where no medium extinguishes but something can be seen: then variant `ray` draws the same picture. Throws Error where a system does
+// not converge.
 std::unique_ptr<scene::Prepared> prepare_paper(std::shared_ptr<const scene::Scene>,
                                                const airlight::legendre_fluids::PaperOptions&,
                                                const std::string& settings);

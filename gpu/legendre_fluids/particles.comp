@@ -10,6 +10,10 @@ uniform int first, count, leaving;
 uniform float seed_low, seed_high;  // of the set, 16 bits each
 uniform dvec3 fall, low, size;      // [m/s], of the box [m]
 uniform double dt;                  // [s]
+#if WIND
+uniform vec3 winds[2];  // in the middle of the box, before the step and after it [half sizes per second]
+uniform mat3 wind_slopes;
+#endif
 #define SLAB (N * NZ)
 #define SIZE (N * SLAB)
 const int wraps = 1, respawns = 2;          // ParticleSet::Leaving
@@ -38,13 +42,16 @@ dvec3 velocity(dvec3 place, float share) {
         float line = 0;
         for (int k = 0; k < NZ; ++k, ++from) {
           float c = share <= 0 ? before[from] : share >= 1 ? after[from] : mix(before[from], after[from], share);
-          line += c * (D == 2 ? 1 : a == 2 ? walls[(D - 1) * N + k] : along[(D - 1) * N + k]);
+          line += c * (D == 2 ? 1 : CONFINED != 0 && a == 2 ? walls[(D - 1) * N + k] : along[(D - 1) * N + k]);
         }
-        plane += line * (a == 1 ? walls[N + j] : along[N + j]);
+        plane += line * (CONFINED != 0 && a == 1 ? walls[N + j] : along[N + j]);
       }
-      u[a] += plane * (a == 0 ? walls[i] : along[i]);
+      u[a] += plane * (CONFINED != 0 && a == 0 ? walls[i] : along[i]);
     }
   }
+#if WIND
+  u += mix(winds[0], winds[1], share) + wind_slopes * at;
+#endif
   return 0.5LF * size * dvec3(u) + fall;
 }
 

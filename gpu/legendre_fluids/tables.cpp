@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "scene/math/dense.h"
+
 namespace airlight::gpu::legendre_fluids {
 namespace {
 
@@ -61,6 +63,15 @@ Tables::Tables(const ConfinedSpace& space, double filter_order) {
   rows(m.free_rates.transpose());
   begin("POWERS");
   rows((Array::LinSpaced(n, 0, 1).array().pow(filter_order)).matrix().transpose());
+  // Along an axis of a wind: the points; from values there to those at both ends; from a value at an end to the values at the points of the
+  // polynomial whose projection has the basis at that end.
+  const MatrixXd ends = scene::legendre_values(n, Array::LinSpaced(2, -1, 1));
+  begin("NODES");
+  rows(m.points.node.transpose());
+  begin("TO_ENDS");
+  rows(scene::product(ends, m.from_points[0]));
+  begin("FROM_ENDS");
+  rows(scene::product(ends, m.at_points[0].transpose()));
   number("MATRICES", int(values_.size() / 4));
 }
 

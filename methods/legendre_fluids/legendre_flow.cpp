@@ -29,7 +29,7 @@ void LegendreFlow::begin() {
     source_.push_back(region_coefficients(*p_, space, box_, p_->sources[i].region, fmt::format("source {}", i)));
   for (std::size_t i = 0; i < p_->pushes.size(); ++i)
     push_.push_back(region_coefficients(*p_, space, box_, p_->pushes[i].region, fmt::format("force {}", i)));
-  settle();
+  LegendreFlow::settle();
 }
 
 void LegendreFlow::begin_densities() {
@@ -53,8 +53,7 @@ void LegendreFlow::begin_densities() {
           [&](const Point3& x) { return scene::start_density(alone[k], x); });
 }
 
-// The time of its wind, and the densities that the share of an albedo stands for.
-void LegendreFlow::settle() {
+void LegendreFlow::settle() const {
   fluid_->time = time_;
   if (mixing_ != Mixing::albedo) return;
   const ConfinedSpace& space = fluid_->space();
@@ -64,8 +63,9 @@ void LegendreFlow::settle() {
 }
 
 const Array& LegendreFlow::smoke(int which) const {
+  const Fluid& fluid = now();
   if (mixing_ == Mixing::albedo) return products_.at(std::size_t(which));
-  return which == 0 ? now().density : now().others.at(std::size_t(which) - 1);
+  return which == 0 ? fluid.density : fluid.others.at(std::size_t(which) - 1);
 }
 
 void LegendreFlow::step(double dt) {

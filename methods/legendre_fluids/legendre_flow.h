@@ -42,6 +42,8 @@ class LegendreFlow : public scene::Flow {
   virtual void move(double dt);
   // The fluid with its coefficients of now, for those who move them elsewhere than in the fluid.
   virtual Fluid& now() const { return *fluid_; }
+  // After the coefficients changed: the time of the fluid's wind, and the densities that the share of an albedo stands for.
+  virtual void settle() const;
 
   // Times of decay, sources and forces that act before the fluid moves in a step of dt [s]; after it
   // they act in the opposite order.
@@ -66,11 +68,11 @@ class LegendreFlow : public scene::Flow {
   std::unique_ptr<Fluid> fluid_;
   Cells cells_;
   std::vector<Array> source_, push_;  // coefficients of their regions
+  Mixing mixing_;
 
  private:
   void begin();
   void begin_densities();
-  void settle();
   const Array& smoke(int which) const;
   void fade(double seconds);
   void add_sources(const Interval& time);
@@ -80,8 +82,7 @@ class LegendreFlow : public scene::Flow {
   std::string shape() const;
   void add_time(const std::string& stage, double seconds);
 
-  Mixing mixing_;
-  std::array<Array, 2> products_;  // of an albedo
+  mutable std::array<Array, 2> products_;  // of an albedo
   double time_ = 0, since_ = 0, last_step_ = 0;
   long long steps_ = 0, equal_steps_ = 0;
   std::vector<scene::StageTime> times_;

@@ -81,6 +81,31 @@ bool is_given(const FlowProblem& p) {
 
 bool air_comes_in(const FlowProblem& p) { return is_given(p) || has_open_sides(p); }
 
+std::optional<Wind> wind_through(const std::shared_ptr<const FlowProblem>& problem, const ReferenceBox& box) {
+  if (!air_comes_in(*problem)) return {};
+  Wind wind;
+  wind.added = !is_given(*problem);
+  wind.incoming.resize(problem->densities.size() + 2);
+  if (const auto* blown = std::get_if<scene::Wind>(&problem->velocity)) {
+    wind.gust = blown->gust.cwiseQuotient(box.half);
+    wind.frequency = blown->frequency;
+  }
+  const Vec3 through = wind_of(*problem);
+  if (wind.added)
+    wind.velocity = [=](const Vec3&) -> Vec3 { return through.cwiseQuotient(box.half); };
+  else
+    wind.velocity = [=](const Vec3& x) -> Vec3 {
+      return scene::start_velocity(*problem, box.outside(x)).cwiseQuotient(box.half);
+    };
+  for (int a = 0; a < problem->dimensions; ++a)
+    for (int side = 0; side < 2; ++side) {
+      const Side& from = problem->sides[a][side];
+      wind.incoming[std::size_t(from.of)][a][side] = from.density;
+      wind.incoming.back()[a][side] = from.temperature;
+    }
+  return wind;
+}
+
 namespace {
 
 void object_to_sides(const FlowProblem& p, std::vector<std::string>& reasons) {
@@ -106,32 +131,6 @@ void object_to_sides(const FlowProblem& p, std::vector<std::string>& reasons) {
                         scene::side_name(side.kind)));
         break;
       }
-}
-
-// Flow through the sides, and the quantities that it carries in; nothing if no air comes in.
-std::optional<Wind> wind_through(const std::shared_ptr<const FlowProblem>& problem, const ReferenceBox& box) {
-  if (!air_comes_in(*problem)) return {};
-  Wind wind;
-  wind.added = !is_given(*problem);
-  wind.incoming.resize(problem->densities.size() + 2);
-  if (const auto* blown = std::get_if<scene::Wind>(&problem->velocity)) {
-    wind.gust = blown->gust.cwiseQuotient(box.half);
-    wind.frequency = blown->frequency;
-  }
-  const Vec3 through = wind_of(*problem);
-  if (wind.added)
-    wind.velocity = [=](const Vec3&) -> Vec3 { return through.cwiseQuotient(box.half); };
-  else
-    wind.velocity = [=](const Vec3& x) -> Vec3 {
-      return scene::start_velocity(*problem, box.outside(x)).cwiseQuotient(box.half);
-    };
-  for (int a = 0; a < problem->dimensions; ++a)
-    for (int side = 0; side < 2; ++side) {
-      const Side& from = problem->sides[a][side];
-      wind.incoming[std::size_t(from.of)][a][side] = from.density;
-      wind.incoming.back()[a][side] = from.temperature;
-    }
-  return wind;
 }
 
 // mixing = albedo moves the sum of two densities and the first one's share, which has no sources or

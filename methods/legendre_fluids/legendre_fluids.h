@@ -4,12 +4,15 @@
 #include "methods/legendre_fluids/confined_fluid.h"
 #include "methods/legendre_fluids/legendre_flow.h"
 #include "methods/legendre_fluids/paper_operators.h"
+#include "methods/legendre_fluids/reference_box.h"
 #include "scene/flow/flow.h"
 
 namespace airlight::legendre_fluids {
 
 // Whether anything goes through the sides of the box.
 bool air_comes_in(const scene::FlowProblem&);
+// Flow through the sides, at most linear in space, and the quantities that it carries in; nothing if no air comes in.
+std::optional<Wind> wind_through(const std::shared_ptr<const scene::FlowProblem>&, const ReferenceBox&);
 
 struct FlowOptions {
   enum class Variant { galerkin, paper, paper_repaired } variant = Variant::galerkin;

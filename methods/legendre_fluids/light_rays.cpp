@@ -119,15 +119,8 @@ LightRays::LightRays(const scene::Scene& scene, const RayOptions& options)
     : geometry_(scene.geometry.get()),
       options_(options),
       media_(scene, rounding_share * options.tolerance),
-      rule_(media_.coefficients, options.points, options.tolerance) {
-  for (const scene::DirectionalLight& light : media_.lights) {
-    bool any = false;
-    for (const LitMedium& m : media_.media)
-      for (const scene::Surface& surface : scene.surfaces)
-        any = any || may_shadow(surface, m.field->box(), light.to_light);
-    shadowed_.push_back(any);
-  }
-}
+      rule_(media_.coefficients, options.points, options.tolerance),
+      shadowed_(shadowed_lights(scene, media_)) {}
 
 bool LightRays::shadowed() const { return std::find(shadowed_.begin(), shadowed_.end(), true) != shadowed_.end(); }
 

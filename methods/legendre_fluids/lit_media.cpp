@@ -104,6 +104,18 @@ bool may_shadow(const scene::Surface& surface, const Box& box, const Vec3& to_li
       });
 }
 
+std::vector<bool> shadowed_lights(const scene::Scene& scene, const LitMedia& lit) {
+  std::vector<bool> shadowed;
+  for (const scene::DirectionalLight& light : lit.lights) {
+    bool any = false;
+    for (const LitMedium& m : lit.media)
+      for (const scene::Surface& surface : scene.surfaces)
+        any = any || may_shadow(surface, m.field->box(), light.to_light);
+    shadowed.push_back(any);
+  }
+  return shadowed;
+}
+
 LitMedia::LitMedia(const scene::Scene& scene, double rounding) {
   for (const scene::Light& light : scene.lights)
     if (const auto* sun = std::get_if<scene::DirectionalLight>(&light);

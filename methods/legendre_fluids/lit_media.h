@@ -26,6 +26,8 @@ struct LitMedia {
 
 // Can a surface stand between a medium's box and a light: not if all of it lies behind the box, as seen from the light.
 bool may_shadow(const scene::Surface&, const Box&, const Vec3& to_light);
+// By light: can a surface stand between it and a medium.
+std::vector<bool> shadowed_lights(const scene::Scene&, const LitMedia&);
 
 // Why a medium is no polynomial in a box; empty if it is one.
 std::string unsupported_field(const std::vector<scene::Medium>&, std::size_t i);

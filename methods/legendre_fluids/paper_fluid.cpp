@@ -14,6 +14,13 @@ using Eigen::MatrixXd;
 
 }  // namespace
 
+void require_tame(double growth, bool repaired) {
+  if (!(growth <= 1e300)) throw scene::Unstable("the energy is no longer finite");
+  if (growth <= most_growth) return;
+  throw scene::Unstable(fmt::format("the energy grew {:.3g} times in a step: {}", growth,
+                                    repaired ? "smaller steps are needed" : "the paper's equations know no walls"));
+}
+
 PaperFluid::PaperFluid(int dimensions, int n, const Vec3& half, const Material& material, Truncation truncation,
                        bool repaired)
     : Fluid(dimensions, n, half, material), advection_(dimensions, n, truncation), laplacian_(dimensions, n, half) {
@@ -82,12 +89,6 @@ void PaperFluid::begin(const VelocityFunction& u) {
   if (material_.moves) project();
 }
 
-void PaperFluid::require_tame() const {
-  if (growth_ <= most_growth) return;
-  throw scene::Unstable(fmt::format("the energy grew {:.3g} times in a step: {}", growth_,
-                                    confined_ ? "smaller steps are needed" : "the paper's equations know no walls"));
-}
-
 // Advection, Eq. 14, and diffusion, Eq. 16. LegendreFlow::move then calls push (forces, Eq. 17) and finish (projection, Eqs. 19 and 20).
 void PaperFluid::advance(double dt) {
   advection_.set_velocity(parts());
@@ -106,8 +107,7 @@ void PaperFluid::advance(double dt) {
         from_confined(confined_->project(confined_->diffused(to_confined(), amount)));
     }
     growth_ = before > 0 ? energy() / before : 1;
-    if (!(growth_ <= 1e300)) throw scene::Unstable("the energy is no longer finite");
-    require_tame();
+    require_tame(growth_, confined_.has_value());
   }
   for (Array* r : carried()) {
     *r = advection_.advected(*r, dt);
@@ -129,7 +129,7 @@ void PaperFluid::finish(double) {
   const double before = energy();
   project();
   if (before > 0) growth_ *= energy() / before;
-  require_tame();
+  require_tame(growth_, confined_.has_value());
 }
 
 Components PaperFluid::at_points() const {

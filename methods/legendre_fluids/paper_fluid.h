@@ -13,6 +13,9 @@
 
 namespace airlight::legendre_fluids {
 
+// Throws scene::Unstable where the energy grew more than tenfold in a step.
+void require_tame(double growth, bool repaired);
+
 class PaperFluid : public Fluid {
  public:
   // n >= 1, n^dimensions <= 1000 unless repaired. There n = 1 and n = 2 are fluids at rest.
@@ -30,6 +33,15 @@ class PaperFluid : public Fluid {
   double at(int component, const Vec3& x) const override;
   std::map<std::string, double> counters() const override;
 
+  // Operators, for other implementations. The last three are of the repaired variant: the space that the velocity is projected to (null in
+  // the other variant), and the matrices along an axis from n coefficients of L to its coefficients, across walls and along them. The
+  // matrices are empty where that space has no velocity.
+  const PaperAdvection& advection() const { return advection_; }
+  const PaperLaplacian& laplacian() const { return laplacian_; }
+  const ConfinedSpace* confined() const { return confined_ ? &*confined_ : nullptr; }
+  const Eigen::MatrixXd& to_wall() const { return to_wall_; }
+  const Eigen::MatrixXd& to_free() const { return to_free_; }
+
  private:
   Array part(int a) const { return velocity.segment(a * space_.scalars(), space_.scalars()); }
   Components parts() const;
@@ -37,7 +49,6 @@ class PaperFluid : public Fluid {
   void project();
   Array to_confined() const;  // L2 projection, with divergence
   void from_confined(const Array& u);
-  void require_tame() const;
 
   PaperAdvection advection_;
   PaperLaplacian laplacian_;

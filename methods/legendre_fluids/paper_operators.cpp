@@ -16,9 +16,17 @@ using scene::product;
 
 namespace {
 
-constexpr double most_parts = 2e4;  // of a step; flows that need more have blown up
+constexpr double most_parts = 2e4;
 
 }  // namespace
+
+int parts_of_advection(double dt, double rate) {
+  const double parts = std::ceil(dt * rate);
+  if (!(parts <= most_parts))
+    throw scene::Unstable(
+        fmt::format("advection at a rate of {:.3g} per second, too much for a step of {:g} s", rate, dt));
+  return std::max(1, int(parts));
+}
 
 PaperAdvection::PaperAdvection(int dimensions, int n, Truncation truncation) : d_(dimensions), n_(n) {
   const int full = 2 * n - 1;  // coefficients of a product, and points that are exact for it
@@ -62,11 +70,7 @@ Array PaperAdvection::operator()(const Array& c) const {
 
 Array PaperAdvection::advected(const Array& c, double dt) const {
   if (c.size() == 0) return c;
-  const double parts = std::ceil(dt * rate_);
-  if (!(parts <= most_parts))
-    throw scene::Unstable(
-        fmt::format("advection at a rate of {:.3g} per second, too much for a step of {:g} s", rate_, dt));
-  const int count = std::max(1, int(parts));
+  const int count = parts_of_advection(dt, rate_);
   Array result = c;
   for (int part = 0; part < count; ++part) {
     Array term = result;
@@ -106,6 +110,11 @@ const scene::LeastNormFactors& PaperLaplacian::decomposition() const {
   MatrixXd matrix(size, size);
   for (int i = 0; i < size; ++i) matrix.col(i) = (*this)(Array::Unit(size, i));
   return decomposition_.emplace(matrix, 1e-11);  // what is smaller is the null space: D^2 is nilpotent
+}
+
+MatrixXd PaperLaplacian::least_norm_inverse() const {
+  const int size = scene::tensor_size(shape_);
+  return decomposition().solve(MatrixXd::Identity(size, size));
 }
 
 Components PaperLaplacian::projected(const Components& u) const {

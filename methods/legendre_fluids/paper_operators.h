@@ -12,6 +12,10 @@ namespace airlight::legendre_fluids {
 
 enum class Truncation { chebyshev, l2 };
 
+// Number of equal parts of a step of dt [s] in which the series of equation 14 is summed, for a norm of A of about `rate` [1/s]. Throws
+// scene::Unstable above 2e4, which flows that have blown up need.
+int parts_of_advection(double dt, double rate);
+
 // A of equation 13, A = T (sum over axes of D M_U), for one velocity: the derivative of all 2n-1 coefficients of each product, cut to n.
 class PaperAdvection {
  public:
@@ -22,6 +26,13 @@ class PaperAdvection {
   // Equation 14, exp(-dt A) c with the right sign, by its series, since A need not have an eigenbasis. Throws scene::Unstable where the
   // velocity is so great that it has no end.
   Array advected(const Array& c, double dt) const;
+
+  // Matrices along an axis, for other implementations: coefficients to values at the points; values of a product to its coefficients, cut
+  // to n; values of a product to coefficients of its derivative, cut to n.
+  struct Matrices {
+    const Eigen::MatrixXd &values, &cut, &derived_and_cut;
+  };
+  Matrices matrices() const { return {values_, cut_, derived_and_cut_}; }
 
  private:
   Array along(const std::array<const Eigen::MatrixXd*, 3>&, const Array&, TensorShape) const;
@@ -42,6 +53,9 @@ class PaperLaplacian {
   // U - D Q with D^2 Q = div U in the sense of least squares, Q of least norm. The first call decomposes a dense matrix of n^d rows.
   Components projected(const Components& u) const;
   int rank() const { return decomposition().rank(); }
+  const Eigen::MatrixXd& derivative() const { return derivative_; }  // D along an axis
+  // The matrix that takes a divergence to Q. Decomposes as projected() does.
+  Eigen::MatrixXd least_norm_inverse() const;
 
  private:
   const scene::LeastNormFactors& decomposition() const;

@@ -41,7 +41,7 @@ LeastNormFactors::LeastNormFactors(const MatrixXd& matrix, double threshold) {
   factors->compute(matrix);
   factors_ = factors;
 }
-VectorXd LeastNormFactors::solve(const VectorXd& right) const { return factors_->solve(right); }
+MatrixXd LeastNormFactors::solve(const MatrixXd& right) const { return factors_->solve(right); }
 int LeastNormFactors::rank() const { return int(factors_->rank()); }
 
 MatrixXd inverse(const MatrixXd& matrix) { return matrix.inverse(); }

@@ -50,7 +50,7 @@ class LeastNormFactors {
  public:
   // Pivots below `threshold` times the greatest count as zero; 0: rounding times the size.
   explicit LeastNormFactors(const Eigen::MatrixXd&, double threshold = 0);
-  Eigen::VectorXd solve(const Eigen::VectorXd& right) const;
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;
   int rank() const;
 
  private:

@@ -53,7 +53,7 @@ DEVICE_TEST_CASE("oracle vectors on the device: fogmaps", "[gpu][verify][wavelet
 
 DEVICE_TEST_CASE("oracle vectors on the device: Legendre fluids and their light", "[gpu][verify][legendre_fluids]") {
   check("legendre_fluids",
-        "project 9 coefficients 3 evaluate 48 advect 14 diffuse 2 rk4 6 step 3 density-advect 4 "
+        "project 12 coefficients 4 evaluate 48 advect 14 diffuse 2 rk4 6 step 3 density-advect 5 "
         "energy-identity 6 taylor-green 7 scatter 42 airlight 12 image 12 upwind-galerkin 18");
 }
 

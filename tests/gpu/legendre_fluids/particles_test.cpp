@@ -81,7 +81,7 @@ DEVICE_TEST_CASE("particles on the device stay on their stream lines to the four
   const scene::FlowProblem problem = swirl(2, 300);
   const scene::FlowParticles start(problem);
   const auto drift = [&](double dt) {
-    gpu::legendre_fluids::FluidOnDevice device(gpu::Context::get(), fluid, {0, 0, false}, {});
+    gpu::legendre_fluids::ConfinedFluidOnDevice device(gpu::Context::get(), fluid, {0, 0, false}, {});
     scene::ParticlePlaces places{start.positions(), {std::vector<double>(300)}};
     gpu::legendre_fluids::ParticlesOnDevice particles(gpu::Context::get(), device, problem, places);
     for (int i = 0; i < std::lround(20 / dt); ++i) {
@@ -120,6 +120,29 @@ DEVICE_TEST_CASE("particles on the device go where the processor's do", "[gpu][l
         if (std::getenv("AIRLIGHT_TEST_FIGURES"))
           fmt::print("{} dimensions, n = {}, leaving {}: {:.1e}\n", dimensions, n, int(leaving), error);
       }
+}
+
+DEVICE_TEST_CASE("particles on the device go where the processor's do: the paper's variants, and a wind",
+                 "[gpu][legendre_fluids][particles]") {
+  for (const int dimensions : {2, 3}) {
+    for (const char* variant : {"paper", "paper_repaired"}) {
+      const Given given{{"n", "5"}, {"variant", variant}};
+      const scene::FlowProblem problem = swirl(dimensions, 40, Leaving::wrap, Vec3(0.1, -0.7, 0));
+      const double error = greatest(by_device(problem, given, 6, 0.02), by_processor(problem, given, 6, 0.02));
+      CAPTURE(dimensions, variant, error);
+      CHECK(error < 2e-6);
+    }
+    scene::FlowProblem problem = swirl(dimensions, 40, Leaving::respawn);
+    problem.velocity = scene::Wind{Vec3(0.5, 0, 0), Vec3(1, 0, 0), 0.7};
+    for (scene::Side& side : problem.sides[0]) side.kind = scene::Side::Kind::open;
+    problem.gravity = Vec3(0, -9.81, 0);
+    problem.weight = 0.02;
+    problem.blobs.push_back({Point3(0.2, -0.3, 0), 0.6, 1, 0});
+    const Given given{{"n", "6"}};
+    const double error = greatest(by_device(problem, given, 12, 0.1), by_processor(problem, given, 12, 0.1));
+    CAPTURE(dimensions, error);
+    CHECK(error < 2e-5);
+  }
 }
 
 DEVICE_TEST_CASE("particles on the device never leave the box", "[gpu][legendre_fluids][particles][thorough]") {
