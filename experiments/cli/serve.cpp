@@ -29,6 +29,9 @@ std::vector<std::string> common_scenes(const std::string& root) {
   for (const auto& entry : std::filesystem::directory_iterator(project_root(root) / "experiments/scenes/common"))
     if (entry.path().extension() == ".toml") files.push_back(entry.path().string());
   std::sort(files.begin(), files.end());
+  // As one would type them, where they are below the current folder.
+  for (std::string& file : files)
+    if (const auto near = std::filesystem::proximate(file); *near.begin() != "..") file = near.string();
   return files;
 }
 

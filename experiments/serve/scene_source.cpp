@@ -111,8 +111,10 @@ SceneSource::SceneSource(const std::string& file)
       scene_(std::make_shared<const scene::Scene>(scene::parse_scene(text_, file, folder_))),
       whole_(scene::load::parse_toml(text_, file)),
       values_(without_contents(whole_)) {
-  const TableReader root(values_, "");
-  const TableReader camera = root.required_table("camera");
+  TableReader root(values_, "");
+  root.allow({"camera", "light", "medium"});
+  TableReader camera = root.required_table("camera");
+  camera.allow({"type", "position", "look_at", "up", "vertical_fov", "height"});
   look_at_ = camera.vector("look_at");
   up_ = camera.direction("up", Vec3::UnitY());
 }
@@ -164,7 +166,9 @@ void SceneSource::read_frames(const std::set<std::size_t>& media, const scene::O
                               scene::Scene& scene) const {
   toml::table root = whole_;
   scene::load::apply_overrides(root, values, file_);
-  const std::vector<TableReader> tables = TableReader(root, "").tables("medium");
+  TableReader reader(root, "");
+  reader.allow({"name", "ambient_in_scatter", "film", "camera", "light", "medium", "surface", "backdrop", "particles"});
+  const std::vector<TableReader> tables = reader.tables("medium");
   for (const std::size_t i : media) {
     scene.media.at(i) = scene::load::read_medium(tables.at(i), folder_);
     scene::load::require_resolved(tables.at(i), scene, scene.media.at(i));

@@ -45,6 +45,11 @@ bool is_same_secret(const std::string& a, const std::string& b) {
   return differences == 0;
 }
 
+// The library lets five connections wait for a thread, and the system loses those that come beside them.
+struct Listener : httplib::Server {
+  void let_more_wait() { ::listen(svr_sock_, 2 * most_connections); }
+};
+
 }  // namespace
 
 bool is_loopback(const std::string& host) { return host == "127.0.0.1" || host == "::1" || host == "localhost"; }
@@ -136,13 +141,13 @@ struct Server::Hidden {
 
   Studio& studio;
   ServerOptions options;
-  httplib::Server http;
+  Listener http;
   int port = 0;
   std::thread thread;
 };
 
 Server::Server(Studio& studio, const ServerOptions& options) : hidden_(std::make_unique<Hidden>(studio, options)) {
-  httplib::Server& http = hidden_->http;
+  Listener& http = hidden_->http;
   http.new_task_queue = [] { return new httplib::ThreadPool(most_connections); };
   http.set_payload_max_length(most_body);
   http.set_keep_alive_max_count(1000);
@@ -173,6 +178,7 @@ Server::Server(Studio& studio, const ServerOptions& options) : hidden_(std::make
   if (hidden_->port <= 0)
     throw Error(fmt::format("{}:{}: cannot listen there: choose another --port, 0 for any that is free", options.host,
                             options.port));
+  http.let_more_wait();
 }
 
 Server::~Server() { stop(); }

@@ -466,7 +466,8 @@ TEST_CASE("Serve: Ctrl-C ends the program, a port that is taken is told", "[expe
   SmallProject project(box_of_fog(24, 18));
   const std::string scene = "'" + project.file("experiments/scenes/one.toml") + "'";
   const Result ended = run_command(
-      "'" + program + "' serve " + scene + " --port 0 & p=$!; sleep 1; kill -INT $p; wait $p; echo code $?", project);
+      "{ '" + program + "' serve " + scene + " --port 0 & p=$!; sleep 2; kill -INT $p; wait $p; echo code $?; }",
+      project);
   CHECK_THAT(ended.out, Contains("http://127.0.0.1:") && Contains("code 0"));
   CHECK(ended.err.empty());
   CHECK_THAT(run("serve nowhere.toml", project).err, Contains("nowhere.toml"));
