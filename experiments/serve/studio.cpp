@@ -7,7 +7,6 @@
 
 #include "experiments/application/interrupt.h"
 #include "scene/base/error.h"
-#include "scene/base/stopwatch.h"
 
 namespace airlight::experiments::serve {
 namespace {
@@ -21,7 +20,7 @@ constexpr auto long_silence = std::chrono::seconds(30);  // after which frames s
 struct Studio::Job {
   FrameRequest request;
   std::shared_ptr<const scene::Scene> scene;
-  scene::Stopwatch since;
+  Clock::time_point asked = Clock::now();
   std::atomic<bool> stop{false};
   std::atomic<double> fraction{0};
   bool done = false;
@@ -118,7 +117,8 @@ std::optional<Frame> Studio::frame(const FrameRequest& request) {
   const auto older = std::find_if(queue_.begin(), queue_.end(), [&](const auto& j) { return j->is_of(request); });
   if (older != queue_.end()) {
     (*older)->done = true;
-    *older = job;  // keeps its place in the queue
+    job->asked = (*older)->asked;  // keeps its place in the queue
+    *older = job;
   } else {
     if (queue_.size() >= most_waiting) throw Error(fmt::format("{} frames are waiting, expected fewer", queue_.size()));
     queue_.push_back(job);
@@ -219,6 +219,23 @@ scene::Execution Studio::execution(const std::atomic<bool>& stop, std::atomic<do
           }};
 }
 
+// Under the mutex. The frame that will be done first if each began when it was asked for: a fast method does not wait for a slow one beside
+// it, and a slow one is not put off for ever.
+std::shared_ptr<Studio::Job> Studio::take_next() {
+  const auto end = [&](const std::shared_ptr<Job>& job) {
+    double seconds = 0;
+    if (const auto of = clients_.find(job->request.client); of != clients_.end())
+      if (const auto last = of->second->frames.find(job->request.pane); last != of->second->frames.end())
+        seconds = last->second.seconds;
+    return job->asked + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  };
+  const auto next =
+      std::min_element(queue_.begin(), queue_.end(), [&](const auto& a, const auto& b) { return end(a) < end(b); });
+  const std::shared_ptr<Job> job = *next;
+  queue_.erase(next);
+  return job;
+}
+
 void Studio::work() {
   std::unique_lock lock(mutex_);
   while (!stopping_) {
@@ -236,8 +253,7 @@ void Studio::work() {
       std::erase_if(references_, [&](const auto& reference) { return reference.first == name; });
     }
     if (!queue_.empty()) {
-      running_ = queue_.front();
-      queue_.pop_front();
+      running_ = take_next();
       lock.unlock();
       render(*running_);
       lock.lock();
@@ -269,7 +285,7 @@ Pane& Studio::pane(const Job& job) {
 }
 
 void Studio::render(Job& job) {
-  const double waited = job.since.lap();
+  const double waited = std::chrono::duration<double>(Clock::now() - job.asked).count();
   try {
     job.frame = pane(job).render(job.request, job.scene, execution(job.stop, &job.fraction));
     job.frame->waited = waited;

@@ -62,6 +62,7 @@ class Studio {
   using Clock = std::chrono::steady_clock;
 
   void work();
+  std::shared_ptr<Job> take_next();
   void render(Job&);
   void grow(const std::string& client);
   Pane& pane(const Job&);

@@ -17,7 +17,7 @@ import unittest
 
 SOURCE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 PROGRAM = os.path.abspath(sys.argv.pop(1)) if len(sys.argv) > 1 and not sys.argv[1].startswith("-") else f"{SOURCE}/build/release/airlight"
-SCENES = [f"experiments/scenes/common/{name}.toml" for name in ("lamp_in_patches", "cloud")]
+SCENES = [f"experiments/scenes/common/{name}.toml" for name in ("lamp_in_patches", "lamp_and_boxes")]
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 
 
@@ -167,7 +167,7 @@ class Serve(unittest.TestCase):
         """The film that the command line gives, as the values of its rows from the top."""
         exr, pfm = f"{self.folder}/one.exr", f"{self.folder}/one.pfm"
         subprocess.run([PROGRAM, *options, "--out", exr, *words], cwd=SOURCE, check=True, capture_output=True)
-        subprocess.run([PROGRAM, "convert", exr, "--out", pfm], cwd=SOURCE, check=True, capture_output=True)
+        subprocess.run([PROGRAM, "convert", exr, pfm], cwd=SOURCE, check=True, capture_output=True)
         with open(pfm, "rb") as file:
             assert file.readline().strip() == b"PF"
             width, height = map(int, file.readline().split())
@@ -193,7 +193,7 @@ class Serve(unittest.TestCase):
             method = self.browser.run(f"airlight.state.panes.{side}.method")
             expected = self.rendered(["render", SCENES[0], "--method", method, "--override", "film.width=320", "--override", "film.height=240"])
             self.assert_alike(self.picture(side), expected)
-        self.browser.wait("document.querySelector('.report .error').textContent.match(/error (below noise, at most )?[0-9.e+-]+ %/)")
+        self.browser.wait("document.querySelector('.report .error').textContent.match(/error (below noise, at most )?[0-9.e+-]+ %/)", 200)
         self.browser.picture_of_page("wipe_1280")
 
     def test_the_copied_command_gives_the_picture_after_a_drag(self):
@@ -260,7 +260,7 @@ class Serve(unittest.TestCase):
                      " let m = 0; for (let i = 0; i < d.length; ++i) if (i % 4 < 3) m = Math.max(m, d[i]); return m; })()")
         self.assertEqual(self.browser.run(brightest), 0)
         self.browser.run("(() => { const m = document.querySelector('details[data-side=\"right\"] select.method'); "
-                         "m.value = 'froxel_fog'; m.dispatchEvent(new Event('input')); })()")
+                         "m.value = 'ray_marcher'; m.dispatchEvent(new Event('input')); })()")
         self.rest()
         self.assertGreater(self.browser.run(brightest), 0)
         self.browser.picture_of_page("difference")
@@ -300,7 +300,7 @@ class Serve(unittest.TestCase):
         self.open(link)
         self.assertEqual(left, self.picture("left"))
         self.assertEqual(self.browser.run("airlight.state.scene"), 1)
-        self.browser.picture_of_page("cloud")
+        self.browser.picture_of_page("boxes")
 
     def test_texts_read_back(self):
         self.focus()
@@ -309,18 +309,17 @@ class Serve(unittest.TestCase):
         self.browser.run("document.getElementById('copy-scene').click()")
         self.browser.wait("document.getElementById('text').open")
         scene = self.browser.run("document.getElementById('text-shown').value")
-        beside = f"{SOURCE}/{os.path.dirname(SCENES[0])}"
-        shutil.copytree(beside, f"{self.folder}/common", dirs_exist_ok=True)
-        with open(f"{self.folder}/common/copy.toml", "w", encoding="utf-8") as file:
+        root = f"{self.folder}/project"
+        shutil.copytree(f"{SOURCE}/experiments/scenes", f"{root}/experiments/scenes", dirs_exist_ok=True)
+        copy = f"{root}/{os.path.dirname(SCENES[0])}/copy.toml"
+        with open(copy, "w", encoding="utf-8") as file:
             file.write(scene)
         method = self.browser.run("airlight.state.panes.left.method")
         film = ["--override", "film.width=320", "--override", "film.height=240"]
-        self.assert_alike(self.picture("left"), self.rendered(["render", f"{self.folder}/common/copy.toml", "--method", method, *film]))
+        self.assert_alike(self.picture("left"), self.rendered(["render", copy, "--method", method, *film]))
         self.browser.run("document.getElementById('text').close(); document.getElementById('copy-experiment').click()")
         experiment = self.browser.run("document.getElementById('text-shown').value")
-        root = f"{self.folder}/project"
         os.makedirs(f"{root}/experiments/mine", exist_ok=True)
-        shutil.copytree(f"{SOURCE}/experiments/scenes", f"{root}/experiments/scenes", dirs_exist_ok=True)
         for name, text in (("README.md", ""), ("mine/one.toml", experiment.replace("samples = 256", "samples = 64"))):
             with open(f"{root}/experiments/{name}", "w", encoding="utf-8") as file:
                 file.write(text)

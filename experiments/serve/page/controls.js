@@ -93,7 +93,7 @@ export function settingRow(spec, given, onChange) {
   if (controls.length === 1) controls[0].setAttribute("aria-label", spec.name);
   const label = element("label", {textContent: spec.name});
   const condition = spec.condition ? ` Read only with ${spec.condition}.` : "";
-  row.append(label, ...controls, element("div", {className: "help", textContent: `${spec.help} (default ${spec.default})${condition}`}));
+  row.append(label, ...controls, element("div", {className: "help", textContent: `${spec.help} (default ${spec.default}).${condition}`}));
   row.classList.toggle("changed", spec.name in given);
   return row;
 }

@@ -22,6 +22,7 @@ let moving = false, restTimer = 0, lastInput = 0;
 const work = Object.fromEntries(sides.map(s => [s, {number: 0, busy: false, still: false, again: false, head: null, latency: null}]));
 const reference = {known: -1, head: null, asking: false};
 const stage = new Stage($("canvas"), state);
+const openSettings = new Set();  // sides
 let playing = null;  // shows the next frame of a sequence, when the panes have drawn one
 
 // ---- what is shown
@@ -30,11 +31,12 @@ const percent = x => `${(100 * x).toPrecision(2)} %`;
 const milliseconds = s => s < 0.0995 ? `${(1000 * s).toPrecision(2)} ms` : s < 10 ? `${(1000 * s).toFixed(0)} ms` : `${s.toFixed(1)} s`;
 
 function errorText(error) {
-  if (!error) return "no reference yet";
+  if (!error) return "no error: there is no reference yet";
   if (error.missing) return `no error: ${error.missing}`;
   if (error.value === null) return "no error: the reference is black";
-  if (error.below_floor) return `below noise, at most ${percent(error.high)}`;
-  return error.low === error.high ? percent(error.value) : `${percent(error.value)} (${percent(error.low)} to ${percent(error.high)})`;
+  if (error.below_floor) return `error below noise, at most ${percent(error.high)}`;
+  const [value, low, high] = [error.value, error.low, error.high].map(percent);
+  return low === high ? `error ${value}` : `error ${value} (${low} to ${high})`;
 }
 
 function table(rows) {
@@ -53,7 +55,7 @@ function reportOf(side) {
     return box;
   }
   box.append(
-    element("div", {className: "error", textContent: `error ${errorText(reference.head && reference.head.errors[side])}`}),
+    element("div", {className: "error", textContent: errorText(reference.head && reference.head.errors[side])}),
     element("div", {textContent: `frame ${milliseconds(head.median.seconds)} (median of ${head.median.frames}), ` +
       `preparation ${head.prepared}, ${head.width}x${head.height} pixels`}));
   if (latency) box.append(element("div", {className: "latency", textContent: `input to picture ${milliseconds(latency.all)}: ` +
@@ -300,12 +302,14 @@ function paneBox(side) {
   menu.setAttribute("aria-label", `method on the ${side}`);
   fill(menu, scene.methods.map(m => ({value: m.name, text: m.name, refused: m.refused})), pane.method);
   const method = scene.methods.find(m => m.name === pane.method), rows = element("div");
+  const settings = element("details", {className: "settings", open: openSettings.has(side)}, element("summary", {textContent: "settings"}), rows);
+  settings.addEventListener("toggle", () => { openSettings[settings.open ? "add" : "delete"](side); });
   menu.addEventListener("input", () => {
     chooseMethod(side, menu.value);
     buildPanes();
     moved();
   });
-  box.append(menu, element("p", {className: "help", textContent: method ? method.about : ""}), rows);
+  box.append(menu, element("p", {className: "help", textContent: method ? method.about : ""}), settings);
   if (!method) return box;
   const mark = () => {
     for (const row of rows.children) {
@@ -469,7 +473,7 @@ async function openScene(number, given) {
   if (!given.view) state.view.exposure = null;
   const can = scene.methods.filter(m => !m.refused).map(m => m.name);
   const own = can.filter(name => ["fogshop", "shadow_planes", "wavelet_fog", "legendre_fluids", "compensated_ray_marching"].includes(name));
-  const usual = {left: own[0] || can[0], right: can.includes("ray_marcher") ? "ray_marcher" : can[can.length - 1]};
+  const usual = {left: own[0] || can[0], right: ["froxel_fog", "ray_marcher"].find(name => can.includes(name)) || can[can.length - 1]};
   for (const side of sides) {
     const wanted = (given.panes && given.panes[side]) || {}, before = state.panes[side].method;
     chooseMethod(side, can.includes(wanted.method) ? wanted.method : can.includes(before) ? before : usual[side]);
