@@ -180,6 +180,34 @@ region = { type = "sphere", center = [0, 0, 0], radius = 1 }
   CHECK(described["lights"][0]["turn"].get<double>() == Approx(0.25));
 }
 
+TEST_CASE("Serve: frames of a sequence are read as by --override", "[experiments][serve]") {
+  TemporaryFolder folder;
+  for (const char* name : {"smoke_0001.vdb", "smoke_0012.vdb"})
+    std::filesystem::copy_file(root + "/experiments/data/plume_0024.vdb", folder.file(name));
+  folder.write("smoke_none.vdb", "");
+  folder.write("sequence.toml", R"([camera]
+position = [0, 1, 5]
+look_at = [0, 1, 0]
+[[light]]
+type = "directional"
+to_light = [2, 2, 1]
+irradiance = 12
+[[medium]]
+type = "grid"
+file = "smoke_####.vdb"
+frame = 1
+sigma_t = 10
+)");
+  const std::string file = folder.file("sequence.toml");
+  const SceneSource source(file);
+  CHECK(source.frames(0) == std::pair(1LL, 12LL));
+  CHECK(source.frame(0) == 1);
+  const scene::Overrides values{{"medium.0.frame", "12"}, {"medium.0.sigma_t", "5"}, {"light.0.irradiance", "3"}};
+  CHECK(source.with(values)->hash == scene::load_scene(file, values).hash);
+  CHECK_THAT(message_of([&] { source.with({{"medium.0.frame", "7"}}); }), Contains("smoke_0007.vdb"));
+  CHECK(!SceneSource(scenes + "common/cloud.toml").frames(0));
+}
+
 TEST_CASE("Serve: values that a scene may not have are refused in one line", "[experiments][serve]") {
   const SceneSource source(scenes + "common/lamp_in_patches.toml");
   for (const scene::Overrides& values : {scene::Overrides{{"medium.0.file", "\"/etc/passwd\""}},
