@@ -32,7 +32,7 @@ std::string with_file_names(const std::string& message, const ShaderSource&);
 // digits: a result that they made is not one of the others. Throws Error if the folder cannot be read.
 std::string foreign_shaders();
 
-// All files that were compiled in, by name; made by cmake/embed_shaders.cmake.
+// All files that were compiled in, by name; made by cmake/embed_files.cmake.
 const std::map<std::string, std::string>& embedded_shaders();
 
 }  // namespace airlight::gpu

@@ -43,7 +43,7 @@ Commands::Commands()
   app.set_version_flag("--version", fmt::format("airlight {} ({})", version(), commit()));
   app.option_defaults()->always_capture_default(false);
   app.footer(
-      "Commands that may use a GPU (render, experiment run, gates, explain, choose, verify, doctor) take --gpu WHICH.");
+      "Commands that may use a GPU (render, experiment run, gates, explain, choose, serve, verify, doctor) take --gpu WHICH.");
   app.allow_extras();
 }
 

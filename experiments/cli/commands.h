@@ -30,6 +30,8 @@ void add_explain(Commands&);
 void add_info(Commands&);
 // Tries what can render a scene, and ranks it within a time or an error (experiments/choosing).
 void add_choose(Commands&);
+// Shows two methods and the reference in a browser, while they run (experiments/serve).
+void add_serve(Commands&);
 // Runs a script of authoring operations (methods/fogshop/README.md) and writes the scene and its tables of Gaussians.
 void add_author(Commands&);
 void add_verify(Commands&);

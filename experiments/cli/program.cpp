@@ -63,7 +63,7 @@ void apply_shared_options(const Commands& commands) {
 // The commands by what they are for, as --help lists them.
 const std::vector<std::pair<std::string, std::vector<void (*)(Commands&)>>> command_groups{
     {"Pictures", {add_render, add_merge, add_compare}},
-    {"Which method", {add_explain, add_choose}},
+    {"Which method", {add_explain, add_choose, add_serve}},
     {"Media and flows", {add_info, add_convert, add_fit, add_author, add_simulate}},
     {"Experiments", {add_experiment, add_gates, add_verify}},
     {"This machine", {add_doctor}}};

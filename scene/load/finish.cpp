@@ -3,6 +3,7 @@
 
 #include "scene/base/content_key.h"
 #include "scene/convert/residual_file.h"
+#include "scene/finish_copy.h"
 #include "scene/light/light_on_surface.h"
 #include "scene/load/hash_parts.h"
 #include "scene/media/fitted.h"
@@ -176,12 +177,16 @@ std::string content_hash(const Scene& scene) {
 
 void finish(Scene& scene) {
   scene.geometry = scene.surfaces.empty() ? nullptr : std::make_shared<const Geometry>(scene.surfaces);
+  scene.surface_hash = surface_hash(scene);
+  finish_copy(scene);
+}
+
+void finish_copy(Scene& scene) {
   move_camera_off_surfaces(scene);
   move_lights_off_surfaces(scene);
   scene.hash = content_hash(scene);
   scene.matter_hash = matter_hash(scene);
   scene.light_hash = light_hash(scene);
-  scene.surface_hash = surface_hash(scene);
 }
 
 }  // namespace airlight::scene

@@ -1,16 +1,6 @@
 // Compares two float images: wipe, flip, signed difference; zoom, pan, exposure, values under the cursor.
-// A picture is {label, width, height, data}: data is base64 of little-endian half floats, RGB, row 0 at the top.
+// A picture is {label, width, height, data}: data is base64 of little-endian half floats, RGB, row 0 at the top. Needs pixels.js.
 "use strict";
-
-const halfTable = (() => {
-  const table = new Float32Array(65536);
-  for (let i = 0; i < 65536; ++i) {
-    const sign = i & 0x8000 ? -1 : 1, exponent = (i >> 10) & 31, fraction = i & 1023;
-    table[i] = sign * (exponent === 0 ? fraction * 2 ** -24
-      : exponent === 31 ? (fraction ? NaN : Infinity) : (1 + fraction / 1024) * 2 ** (exponent - 15));
-  }
-  return table;
-})();
 
 function decode(picture) {
   if (picture.values) return picture.values;
@@ -20,15 +10,6 @@ function decode(picture) {
   picture.values = values;
   return values;
 }
-
-const toSrgb = (() => {
-  const table = new Uint8ClampedArray(4097);
-  for (let i = 0; i <= 4096; ++i) {
-    const v = i / 4096;
-    table[i] = Math.round(255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * v ** (1 / 2.4) - 0.055));
-  }
-  return v => table[v >= 1 ? 4096 : v > 0 ? (v * 4096) | 0 : 0];
-})();
 
 // Signed difference: blue is darker than the reference, red is brighter, white is equal.
 function diverging(x, out, at) {
