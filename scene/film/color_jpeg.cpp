@@ -23,6 +23,8 @@ ColorImage read_jpeg(const std::string& path) {
   int width = 0, height = 0, subsampling = 0, colours = 0;
   if (tjDecompressHeader3(decoder.get(), bytes, file.size(), &width, &height, &subsampling, &colours) != 0)
     throw damaged();
+  // The library calls a file that ends in its header a table without a picture.
+  if (width == 0 || height == 0) throw Error(fmt::format("{}: damaged JPEG: it has no picture", path));
   if (colours == TJCS_CMYK || colours == TJCS_YCCK)
     throw Error(fmt::format("{}: a JPEG of printing inks (CMYK), expected RGB or grey", path));
   require_size(path, width, height);

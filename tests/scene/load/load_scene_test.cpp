@@ -96,7 +96,7 @@ TEST_CASE("overrides change values before they are read", "[load]") {
         std::string::npos);
   CHECK(error_of(fog, {{"medium.0.sigma", "1"}}) ==
         "override medium.0.sigma = 1 of fog.toml: medium 0: unknown key 'sigma', expected one of name, type, sigma_t, "
-        "albedo, phase, region, constant, cutoff, gaussians, file (nearest: sigma_t)");
+        "albedo, phase, region, constant, cutoff, gaussians, file, frame (nearest: sigma_t)");
   CHECK(error_of(fog, {{"medium.1.sigma_t", "1"}}) ==
         "override medium.1.sigma_t = 1 of fog.toml: 'medium' is a list of 1, found '1', expected an index below 1");
   CHECK(
