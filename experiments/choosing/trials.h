@@ -50,7 +50,8 @@ class Trials {
   // Throws Error where something of `moves` has nothing in the scene that could move so.
   Trials(std::shared_ptr<const scene::Scene>, TrialSetup, std::vector<Moves>, Report);
 
-  // Those of the candidates that are wanted (default: all), each renderer's first row first. Throws scene::Interrupted on a signal; where the time to spend is over, the trial says so.
+  // Tries the candidates that are wanted (default: all), each renderer's first row first. Throws scene::Interrupted on a signal; a trial says
+  // so where the time to spend is over.
   std::vector<Trial> run(const std::vector<Candidate>&, const Truth&, const Goal&,
                          const std::function<bool(const Candidate&)>& wanted = {});
   // Share of the threads' time in run() in which no processor was free for them: other programs made times longer.

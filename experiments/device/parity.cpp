@@ -62,7 +62,7 @@ const std::vector<PictureCase>& picture_cases() {
   return cases;
 }
 
-// Of the greatest value, after 40 steps in tests/gpu/legendre_fluids/flow_test.cpp.
+// Bound on the difference over the greatest value, as after 40 steps in tests/gpu/legendre_fluids/flow_test.cpp.
 constexpr double flow_tolerance = 2e-5;
 const Given flow_settings{{"n", "6"}, {"filter_velocity", "0.5"}, {"filter_carried", "1"}};
 

@@ -87,7 +87,7 @@ class Comparing {
   void arrays(const std::string& name, const Array& expected, const Array& got) {
     for (const Comparison& c : largest_differences(name, expected, got, gate())) add(c);
   }
-  // Of the paper's variants, which are in double precision on the device.
+  // Compares arrays of the paper's variants, which the device computes in double precision, too.
   void arrays_in_double(const std::string& name, const Array& expected, const Array& got, double gate) {
     for (const Comparison& c : largest_differences(name, expected, got, gate)) add(c);
   }

@@ -31,7 +31,7 @@ double extinction_of(int cell) { return sigma_t * double(densities[cell]); }
 double half_resistance(int cell, int axis) {
   return 0.5LF * edge_on(axis) * transport * max(extinction_of(cell), vacuum);
 }
-// Of the face on that side: flux = (L0 of low - L0 of high + push) / resistance. Marshak's condition adds 2 where nothing is beyond.
+// Resistance of the face on that side: flux = (L0 of low - L0 of high + push) / resistance. Marshak adds 2 where nothing is beyond.
 double resistance(Cell cell, int axis, int side) {
   int other = beside(cell, axis, side);
   return half_resistance(cell.at, axis) + (other < 0 ? 2.0LF : half_resistance(other, axis));

@@ -7,7 +7,7 @@ shared double together[LOCAL_SIZE_X];
 #define SUM_OF_SQUARES 2  // of the residual
 #define SUM_OF_SCALED 3   // residual times inverse times residual; two, of even and odd iterations
 
-// Of all lanes of the work group.
+// Sum over all lanes of the work group.
 double total(double mine) {
   barrier();
   together[lane] = mine;

@@ -140,7 +140,7 @@ class Runs(unittest.TestCase):
         rows = list(csv.DictReader(self.read("frames.csv").splitlines()))
         nave = next(r for r in rows if (r["scene"], r["method"]) == ("nave", "rule, GPU"))
         self.assertAlmostEqual(float(nave["times_faster_least"]), 500 / 12)
-        self.assertFalse(os.path.exists(f"{self.root}/results/device/geforce-1/work"))
+        self.assertFalse(os.path.exists(f"{self.root}/results/device/geforce-1/unfinished"))
         self.assertTrue(all(" --gpu auto" in call for call in self.calls()))
         # Whatever ended is kept.
         count = len(self.calls())

@@ -72,7 +72,7 @@ export function paint(picture, view, out) {
   }
 }
 
-// Of two pictures, on the first one's pixels: signed (red: a is brighter), or relative to b. Equal pixels are black.
+// Difference of two pictures, on the first one's pixels: signed (red: a is brighter), or relative to b. Equal pixels are black.
 export function paintDifference(a, b, view, out) {
   const gain = 2 ** (view.relative ? view.gain : view.exposure + view.gain);
   let floor = 0;

@@ -63,7 +63,7 @@ inline void run(scene::Flow& flow, int steps, double dt) {
   for (int i = 0; i < steps; ++i) flow.step(dt);
 }
 
-// Of all fields: differences of coefficients, over the greatest one of the field.
+// Differences of the coefficients of all fields, over the greatest one of the field.
 inline std::vector<double> coefficient_differences(const scene::Flow& expected, const scene::Flow& got) {
   const std::string mine = got.state(), theirs = expected.state(), shape = theirs.substr(0, theirs.find('\n'));
   scene::StateReader a(mine, shape), b(theirs, shape);
