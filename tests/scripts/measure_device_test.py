@@ -40,6 +40,9 @@ if command == "experiment":
     import tomllib
     with open(f"{option('--root')}/experiments/{name}.toml", "rb") as stream:
         file = tomllib.load(stream)
+    if "like" in file:
+        with open(f"{option('--root')}/experiments/{file['like']['experiment']}.toml", "rb") as stream:
+            file = tomllib.load(stream)
     rows = []
     for scene in file.get("scene", [{"name": ""}]):
         for method in file["method"]:
@@ -72,6 +75,12 @@ class Files(unittest.TestCase):
         for experiment in measure.EXPERIMENTS:
             text = text_of(experiment["id"])
             whole = tomllib.loads(text)
+            if experiment.get("whole"):
+                kept = tomllib.loads(measure.without_gates(text))
+                self.assertTrue(kept["like"]["device"])
+                self.assertFalse({"gate", "plot", "expected", "claim", "conclusion"} & set(kept))
+                self.assertIn(kept["like"]["experiment"], experiment["needs"])
+                continue
             for profile in ("quick", "paper"):
                 def here(tables):
                     return [t for t in tables if profile in t.get("profiles", [profile])]
@@ -102,9 +111,9 @@ class Runs(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.root)
         os.mkdir(f"{self.root}/scripts")
         shutil.copy(f"{SCRIPTS}/measure_device", f"{self.root}/scripts")
-        for experiment in script().EXPERIMENTS:
-            os.makedirs(os.path.dirname(f"{self.root}/experiments/{experiment['id']}"), exist_ok=True)
-            shutil.copy(f"{SOURCE}/experiments/{experiment['id']}.toml", f"{self.root}/experiments/{experiment['id']}.toml")
+        for name in (n for e in script().EXPERIMENTS for n in (e["id"], *e.get("needs", []))):
+            os.makedirs(os.path.dirname(f"{self.root}/experiments/{name}"), exist_ok=True)
+            shutil.copy(f"{SOURCE}/experiments/{name}.toml", f"{self.root}/experiments/{name}.toml")
         with open(f"{self.root}/experiments/README.md", "w"):
             pass
         os.makedirs(f"{self.root}/tests/vectors")
@@ -152,7 +161,8 @@ class Runs(unittest.TestCase):
         code, out, err = self.run_script("--minutes", "0.13", faults="slow")
         self.assertEqual((code, err), (4, ""), out)
         self.assertIn("wavelet_fog/table1: out of time\n", out)
-        self.assertIn("not measured: wavelet_fog/table1, wavelet_fog/table2, wavelet_fog/table3; --resume goes on with them\n", out)
+        self.assertIn("not measured: wavelet_fog/table1, wavelet_fog/table2, wavelet_fog/table3, common/device, common/large_film_device; "
+                      "--resume goes on with them\n", out)
         self.assertIn("| gargoyle |", self.read("README.md"))
         code, out, err = self.run_script("--resume")
         self.assertEqual((code, err), (0, ""), out)
