@@ -41,8 +41,10 @@ std::string key_of(const Simulation& s) {
   return content_key({s.problem->hash, s.solver.name(), s.settings.canonical(), source_id()});
 }
 
-constexpr std::size_t most_bytes = std::size_t(1) << 36;
-std::string checksum_of(const std::string& file) { return content_key(scene::read_whole_file(file, most_bytes)); }
+constexpr std::size_t most_bytes_of_simulation = std::size_t(1) << 36;
+std::string checksum_of(const std::string& file) {
+  return content_key(scene::read_whole_file(file, most_bytes_of_simulation));
+}
 
 // Head of `state`: key, last frame, and files of coefficients of each frame; then a checksum and a name for each
 // complete file. Particles and flow follow, then a checksum of everything.
@@ -53,7 +55,7 @@ struct Kept {
 };
 Kept read_state(const std::string& path) {
   Kept kept;
-  kept.bytes = scene::read_whole_file(path, most_bytes);
+  kept.bytes = scene::read_whole_file(path, most_bytes_of_simulation);
   kept.key = kept.bytes.substr(0, kept.bytes.find('\n'));
   const std::size_t sum = content_key(std::string_view()).size();
   const std::string_view all = kept.bytes;
@@ -74,9 +76,9 @@ class OfAnother : public Error {
   using Error::Error;
 };
 
-class Folder {
+class SimulationFolder {
  public:
-  explicit Folder(const Simulation& s) : s_(s), key_(key_of(s)) {
+  explicit SimulationFolder(const Simulation& s) : s_(s), key_(key_of(s)) {
     std::error_code code;
     fs::create_directories(s.folder, code);
     if (code) throw Error(fmt::format("{}: {}", s.folder.string(), code.message()));
@@ -230,7 +232,7 @@ class Carried {
 
 FramesThere frames_there(const Simulation& s) {
   try {
-    const auto kept = Folder(s).verified();
+    const auto kept = SimulationFolder(s).verified();
     return {kept ? kept->last + 1 : 0, ""};
   } catch (const OfAnother&) {
     return {};
@@ -246,7 +248,7 @@ SimulationReport simulate(const Simulation& s, const scene::Execution& execution
                             s.problem->duration, s.problem->frame_rate));
   const auto flow = s.solver.start(s.problem, s.settings, execution);
   Carried carried(s, *flow, execution);
-  Folder folder(s);
+  SimulationFolder folder(s);
   std::optional<FolderLock> lock;
   if (!s.locked) lock.emplace(s.folder);
   SimulationReport report;

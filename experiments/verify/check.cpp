@@ -13,8 +13,11 @@ bool Comparison::ok() const {
 }
 
 Comparison relative(std::string what, double expected, double got, double tolerance, double floor) {
+  const std::string share = fmt::format("{:.0e} relative", tolerance), rest = fmt::format("{:.0e} absolute", floor);
   return {std::move(what), expected, got, tolerance * std::abs(expected) + floor,
-          fmt::format("{:.0e} relative", tolerance)};
+          tolerance == 0    ? rest
+          : floor <= 1e-300 ? share
+                            : share + " + " + rest};
 }
 
 Comparison absolute(std::string what, double expected, double got, double tolerance) {

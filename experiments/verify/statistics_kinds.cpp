@@ -120,7 +120,7 @@ Check read_hypervolume(const Value& v, double accuracy) {
   const double time = in["ref"][0].number(), error = in["ref"][1].number(), area = e["hv"].number();
   return {"", [=](VerifyProfile) {
             Outcome out;
-            const std::vector<std::size_t> found = front(all);
+            const std::vector<std::size_t> found = experiments::front(all);
             out.add(absolute("points on the front", double(best.size()), double(found.size()), 0));
             for (std::size_t i = 0; i < std::min(best.size(), found.size()); ++i) {
               const std::string name = "front " + std::to_string(i);

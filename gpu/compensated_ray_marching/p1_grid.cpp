@@ -12,26 +12,33 @@ using airlight::compensated_ray_marching::OrdinateGrid;
 using airlight::compensated_ray_marching::P1Options;
 using diffusion::SystemData;
 
-constexpr int line = 64, lanes = 128;   // invocations of a work group; of one that sums
-constexpr int sums = 5;                 // p1_sums.glsl
-constexpr int groups_on_software = 16;  // of sums; a work group there takes long to meet at a barrier
-constexpr int first_iterations = 16;    // told to the device before any is looked at
+constexpr int p1_line = 64, p1_lanes = 128;  // invocations of a work group; of one that sums
+constexpr int sums = 5;                      // p1_sums.glsl
+constexpr int groups_on_software = 16;       // of sums; a work group there takes long to meet at a barrier
+constexpr int p1_first_iterations = 16;      // told to the device before any is looked at
 
-enum MatrixStage { stage_faces, stage_inverse };  // p1_matrix.comp
+enum P1MatrixStage { p1_stage_faces, p1_stage_inverse };  // p1_matrix.comp
 // p1_gradients.comp
-enum GradientStage { stage_eliminated, stage_begin, stage_turn, stage_half, stage_along, stage_step };
+enum P1GradientStage {
+  p1_stage_eliminated,
+  p1_stage_begin,
+  p1_stage_turn,
+  p1_stage_half,
+  p1_stage_along,
+  p1_stage_step
+};
 
 Program& p1_program(Context& context, const char* file, int x, int order = 1) {
   return program(context, file, x, 1,
                  {{"BANDS", std::to_string(order * order)},
                   {"VECTORS", std::to_string(diffusion::vectors_of_gradients)},
                   {"SUMS", std::to_string(sums)},
-                  {"STAGE_FACES", std::to_string(stage_faces)},
-                  {"STAGE_ELIMINATED", std::to_string(stage_eliminated)},
-                  {"STAGE_BEGIN", std::to_string(stage_begin)},
-                  {"STAGE_TURN", std::to_string(stage_turn)},
-                  {"STAGE_HALF", std::to_string(stage_half)},
-                  {"STAGE_ALONG", std::to_string(stage_along)}});
+                  {"STAGE_FACES", std::to_string(p1_stage_faces)},
+                  {"STAGE_ELIMINATED", std::to_string(p1_stage_eliminated)},
+                  {"STAGE_BEGIN", std::to_string(p1_stage_begin)},
+                  {"STAGE_TURN", std::to_string(p1_stage_turn)},
+                  {"STAGE_HALF", std::to_string(p1_stage_half)},
+                  {"STAGE_ALONG", std::to_string(p1_stage_along)}});
 }
 
 std::size_t bytes(int cells, int numbers) { return 8 * std::size_t(cells) * std::size_t(numbers); }
@@ -46,19 +53,19 @@ P1GridOnDevice::P1GridOnDevice(Context& context, const OrdinateGrid& grid, const
       options_(options),
       cells_(int(grid.nodes())),
       lights_(lights),
-      groups_(std::clamp(cells_ / (2 * lanes), 1, context.software() ? groups_on_software : lanes)),
+      groups_(std::clamp(cells_ / (2 * p1_lanes), 1, context.software() ? groups_on_software : p1_lanes)),
       vacuum_(airlight::compensated_ray_marching::extinction_of_vacuum(grid)),
-      right_program_(&p1_program(context, "p1_right", lanes, order)),
-      gradients_program_(&p1_program(context, "p1_gradients", lanes)),
-      radiance_program_(&p1_program(context, "p1_radiance", line, order)),
+      right_program_(&p1_program(context, "p1_right", p1_lanes, order)),
+      gradients_program_(&p1_program(context, "p1_gradients", p1_lanes)),
+      radiance_program_(&p1_program(context, "p1_radiance", p1_line, order)),
       matrix_(context, "diffusion matrix", bytes(cells_, 5), Contents::undefined),
       vectors_(context, "vectors of diffusion", bytes(cells_, diffusion::vectors_of_gradients * lights)),
       systems_(context, "diffusion systems", sizeof(SystemData) * std::size_t(lights)),
       parts_(context, "parts of sums", bytes(groups_, sums * lights)) {
-  Program& p = p1_program(context, "p1_matrix", line);
+  Program& p = p1_program(context, "p1_matrix", p1_line);
   bind(p);
   matrix_.bind(at::matrix);
-  for (const int stage : {stage_faces, stage_inverse}) {
+  for (const int stage : {p1_stage_faces, p1_stage_inverse}) {
     p.set("stage", stage);
     p.dispatch(cells_);
   }
@@ -86,7 +93,7 @@ void P1GridOnDevice::gradients(int stage, int iteration) {
   Program& p = *gradients_program_;
   p.set("stage", stage);
   p.set("iteration", iteration);
-  p.dispatch(groups_ * lanes, 1, lights_);
+  p.dispatch(groups_ * p1_lanes, 1, lights_);
 }
 
 void P1GridOnDevice::solve(const Buffer& single, const Buffer& result, int first_light,
@@ -98,7 +105,7 @@ void P1GridOnDevice::solve(const Buffer& single, const Buffer& result, int first
   set_vectors(right);
   right.set("first_light", first_light);
   right.set("groups", groups_);
-  right.dispatch(groups_ * lanes, 1, lights_);
+  right.dispatch(groups_ * p1_lanes, 1, lights_);
 
   iterate(execution);
 
@@ -119,16 +126,16 @@ void P1GridOnDevice::iterate(const scene::Execution& execution) {
   p.set("groups", groups_);
   p.set("most_iterations", options_.iterations);
   p.set_double("tolerance", options_.tolerance);
-  gradients(stage_eliminated, 1);
-  gradients(stage_begin, 1);
-  gradients(stage_turn, 1);
-  int told = 0, next = std::min(last_ > 0 ? last_ : first_iterations, options_.iterations);
+  gradients(p1_stage_eliminated, 1);
+  gradients(p1_stage_begin, 1);
+  gradients(p1_stage_turn, 1);
+  int told = 0, next = std::min(last_ > 0 ? last_ : p1_first_iterations, options_.iterations);
   for (bool done = false; !done;) {
     for (; told < next; ++told) {
-      gradients(stage_half, told + 1);
-      gradients(stage_along, told + 1);
-      gradients(stage_step, told + 1);
-      gradients(stage_turn, told + 2);
+      gradients(p1_stage_half, told + 1);
+      gradients(p1_stage_along, told + 1);
+      gradients(p1_stage_step, told + 1);
+      gradients(p1_stage_turn, told + 2);
     }
     iterations_ = last_ = 0;
     error_ = 0;
@@ -143,7 +150,7 @@ void P1GridOnDevice::iterate(const scene::Execution& execution) {
     if (execution.progress && !execution.progress(1)) throw scene::Interrupted("interrupted");
     next = std::min(told + std::max(4, told / 2), options_.iterations);
   }
-  gradients(stage_eliminated, 1);
+  gradients(p1_stage_eliminated, 1);
 }
 
 }  // namespace airlight::gpu::compensated_ray_marching

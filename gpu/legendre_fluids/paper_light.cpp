@@ -16,10 +16,10 @@ using scene::TensorShape;
 
 constexpr int most_vectors = 400, most_gradients = 20000;      // steps of GMRES, of conjugate gradients
 constexpr std::size_t room_of_vectors = std::size_t(1) << 26;  // bytes
-constexpr int loops_of_dispatch = 20000;                       // llvmpipe ends all loops after 65535 iterations
+constexpr int loops_of_light = 20000;                          // llvmpipe ends all loops after 65535 iterations
 constexpr int first_steps = 32;                                // that are tried
 constexpr double squared = 1e-2;                               // of the tolerance, where conditions are squared
-constexpr double more_steps = 1.25;                            // than were enough
+constexpr double more_light_steps = 1.25;                      // than were enough
 
 std::string three(const TensorShape& n) { return fmt::format("ivec3({}, {}, {})", n[0], n[1], n[2]); }
 void add_rows(const Eigen::MatrixXd& m, std::vector<double>& at_end) {
@@ -165,7 +165,7 @@ void PaperSystems::lay_out_work(const DensityProduct& product) {
   const double widest = std::max({m[0], m[1], m[2]}), lanes = group_;
   const double loops = (6 * double(region) * widest + 4 * double(n) * widest) * (upwind() ? 1 : 2) / lanes +
                        (upwind() ? 4 * double(n) * 100 / lanes : 0);
-  together_ = std::max(1, int(loops_of_dispatch / loops));
+  together_ = std::max(1, int(loops_of_light / loops));
   const auto doubles = [&](const char* name, std::size_t count) {
     return std::make_unique<Buffer>(context_, name, 8 * count, Contents::undefined);
   };
@@ -284,7 +284,7 @@ bool PaperSystems::look(Kind& kind, const std::vector<float>& status) {
   if (!done && (!(residual < infinity) || most >= most_steps_))
     throw Error(fmt::format("{} left a residual of {:.1e} after {} iterations, expected {:.1e}",
                             upwind() ? "GMRES" : "conjugate gradients", residual, most, tolerance_));
-  kind.rounds = std::min(most_steps_, std::max(kind.rounds, int(more_steps * most) + 1) * (done ? 1 : 2));
+  kind.rounds = std::min(most_steps_, std::max(kind.rounds, int(more_light_steps * most) + 1) * (done ? 1 : 2));
   return done;
 }
 

@@ -7,7 +7,7 @@ namespace {
 
 constexpr int degree = CellPolynomial::degree, nodes = degree + 1;
 
-double node(int i) { return std::cos(pi * (i + 0.5) / nodes); }
+double chebyshev_node(int i) { return std::cos(pi * (i + 0.5) / nodes); }
 
 // [coefficient][point]: transforms along three axes, and from Chebyshev's polynomials to powers.
 using Fit = Eigen::Matrix<double, CellPolynomial::size, CellPolynomial::points>;
@@ -59,7 +59,8 @@ const std::vector<Vec3>& cell_points() {
   static const std::vector<Vec3> points = [] {
     std::vector<Vec3> result;
     for (int p = 0; p < CellPolynomial::points; ++p)
-      result.emplace_back(node(p % nodes), node(p / nodes % nodes), node(p / (nodes * nodes)));
+      result.emplace_back(chebyshev_node(p % nodes), chebyshev_node(p / nodes % nodes),
+                          chebyshev_node(p / (nodes * nodes)));
     return result;
   }();
   return points;

@@ -31,7 +31,8 @@ if command == "doctor" and "--check" in sys.argv:
 if command == "doctor":
     print("airlight 0.1.0 (abc)\\n  graphics   " + ("gpu: none is to be used, as asked for" if "nothing" in faults else "chosen: " + device))
 if command == "verify":
-    print("a.json: 3 vectors, 4 numbers compared: 4 ok, 0 out; 1 skipped\\nb.json: 2 vectors, 2 numbers compared: 2 ok, 0 out; 0 skipped")
+    print("a.json: 3 vectors, 4 numbers compared: 4 ok, 0 out; 1 skipped\\nb.json: 2 vectors, 2 numbers compared: 2 ok, 0 out; 0 skipped\\n"
+          "all files: 5 vectors, 6 numbers compared: 6 ok, 0 out; 1 skipped")
 if command == "experiment":
     option = lambda name: sys.argv[sys.argv.index(name) + 1]
     name = sys.argv[3]
