@@ -15,6 +15,7 @@
 #include "experiments/cli/output.h"
 #include "experiments/cli/samples.h"
 #include "experiments/cli/scene_option.h"
+#include "experiments/cli/viewer.h"
 #include "scene/base/content_store.h"
 #include "scene/base/error.h"
 
@@ -23,7 +24,7 @@ namespace {
 
 struct RenderOptions {
   SceneOptions scene;
-  std::string method, out, png, samples, cache;
+  std::string method, out, png, samples, cache, display;
   Pairs settings;
   int threads = 0;
   double exposure = 0;
@@ -71,6 +72,9 @@ int render(const RenderOptions& options) {
   require_output(options.out, ".exr");
   if (!options.png.empty()) require_output(options.png, ".png");
   const auto scene = load(options.scene, options.threads);
+  std::optional<Viewer> viewer;
+  if (!options.display.empty()) viewer.emplace(options.display);
+  const auto show = [&](const scene::Film& film) { viewer->show(film, options.out); };
 
   Progress progress(fmt::format("{} {}", options.method, scene->name));
   std::optional<scene::CannotWrite> not_kept;
@@ -82,13 +86,18 @@ int render(const RenderOptions& options) {
   if (part) {
     renderer.require_support(*scene, settings);
     film = render_samples(scene, settings, *range, execution, options.out + ".samples");
+  } else if (viewer && renderer.monte_carlo() && options.cache.empty()) {
+    renderer.require_support(*scene, settings);
+    film = render_in_passes(scene, settings, execution, show);
   } else {
     film = renderer.prepare(scene, settings, execution)->render(scene::view_of(*scene), execution).film;
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (viewer) show(film);
   if (options.distance) add_distance(*scene, film);
   write(options, renderer, *scene, settings, seconds, film);
   if (not_kept) say(fmt::format("warning: {}; {} is written, its samples are not kept", not_kept->what(), options.out));
+  if (viewer && viewer->lost()) say(fmt::format("warning: the viewer at {} went away", options.display));
   check_interrupted();
   if (not_kept) return not_kept->exit_code();
   if (isatty(STDERR_FILENO)) {  // scripts read warnings alone
@@ -116,6 +125,10 @@ void add_render(Commands& commands) {
   c->add_option("--threads", options->threads, "number of threads (default 0: all)")->check(CLI::Range(0, 4096));
   c->add_option("--samples", options->samples,
                 "samples per pixel N, or a range A..B that `airlight merge` joins with others (path_tracer only)");
+  c->add_option(
+      "--display", options->display,
+      "HOST:PORT of a viewer that speaks tev's protocol (tev listens on 127.0.0.1:14158): show the picture there; "
+      "path_tracer shows it again whenever it has twice as many samples");
   c->add_option("--cache", options->cache,
                 "folder that keeps samples, so that a stopped render continues (path_tracer only)");
   add_pairs(c, "--set", options->settings,

@@ -10,6 +10,7 @@
 #include "experiments/cli/commands.h"
 #include "experiments/cli/output.h"
 #include "reference/path_tracer/accumulation.h"
+#include "reference/path_tracer/stopping.h"
 #include "scene/base/error.h"
 
 namespace airlight::experiments::cli {
@@ -43,6 +44,40 @@ scene::Film render_samples(std::shared_ptr<const scene::Scene> scene, const scen
   const bool whole = path_tracer::render_range(world, view, range.begin, range.end, execution, samples);
   if (!whole && samples.least_samples() == 0) throw scene::Interrupted("interrupted before every pixel had a sample");
   path_tracer::write_range_file(samples_file, samples);
+  scene::Film film = path_tracer::to_film(world, view, samples);
+  film.metadata["complete"] = whole ? "true" : "false";
+  return film;
+}
+
+namespace {
+
+bool passes(const path_tracer::World& world, const scene::View& view, const scene::Execution& execution,
+            path_tracer::Accumulation& samples, const std::function<void(const scene::Film&)>& show) {
+  const std::uint64_t wanted = world.options().samples;
+  for (std::uint64_t before = 0, n = std::min(path_tracer::leaf_samples, wanted);;
+       before = n, n = std::min(2 * n, wanted)) {
+    scene::Execution pass = execution;
+    pass.progress = [&](double share) {
+      const double done = (double(before) + share * double(n - before)) / double(wanted);
+      return !execution.progress || execution.progress(done);
+    };
+    if (!path_tracer::render_range(world, view, 0, n, pass, samples)) return false;
+    if (n == wanted) return true;
+    show(path_tracer::to_film(world, view, samples));
+  }
+}
+
+}  // namespace
+
+scene::Film render_in_passes(std::shared_ptr<const scene::Scene> scene, const scene::Settings& settings,
+                             const scene::Execution& execution, const std::function<void(const scene::Film&)>& show) {
+  const path_tracer::World world(scene, path_tracer::parse_options(settings));
+  const scene::View view = scene::view_of(*scene);
+  path_tracer::Accumulation samples = path_tracer::empty_accumulation(world, view);
+  // Tiles that stop by their error stop where they would without a viewer.
+  const bool whole = world.options().target_error > 0 ? path_tracer::render_to_target(world, view, execution, samples)
+                                                      : passes(world, view, execution, samples, show);
+  if (samples.least_samples() == 0) throw scene::Interrupted("interrupted before every pixel had a sample");
   scene::Film film = path_tracer::to_film(world, view, samples);
   film.metadata["complete"] = whole ? "true" : "false";
   return film;

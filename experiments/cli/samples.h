@@ -1,6 +1,7 @@
 // Ranges of samples of the path tracer: computed apart, merged to the same bits.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -21,5 +22,10 @@ std::optional<SampleRange> sample_range(const std::string& text);
 // done; throws Interrupted if there is nothing.
 scene::Film render_samples(std::shared_ptr<const scene::Scene>, const scene::Settings&, const SampleRange&,
                            const scene::Execution&, const std::string& samples_file);
+
+// Renders with the path tracer and shows the picture so far after 64, 128, 256, ... samples. The result has the bits that the renderer makes
+// in one go.
+scene::Film render_in_passes(std::shared_ptr<const scene::Scene>, const scene::Settings&, const scene::Execution&,
+                             const std::function<void(const scene::Film&)>& show);
 
 }  // namespace airlight::experiments::cli
