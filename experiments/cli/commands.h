@@ -24,6 +24,8 @@ void add_simulate(Commands&);
 // experiment list, run, plot.
 void add_experiment(Commands&);
 void add_gates(Commands&);
+// Figures of the records of finished experiments, for papers and notebooks (experiments/driver/export.h).
+void add_results(Commands&);
 // Which renderers can render a scene; with --method or --verbose their settings and stages.
 void add_explain(Commands&);
 // What a file holds: sizes, ranges and units.
