@@ -23,13 +23,6 @@ const Measure* measure_of(const Row& row, const std::string& name) {
   return nullptr;
 }
 
-// The name of a method with the device that it ran on: a software renderer is no GPU.
-std::string with_device(std::string method, const std::string& device) {
-  const auto at = method.rfind("GPU");
-  if (at != std::string::npos && is_processor(device)) method.replace(at, 3, "llvmpipe (CPU)");
-  return method;
-}
-
 // One curve from two columns of a row, its points in their order.
 std::optional<PlotCurve> curve_of_columns(const Row& row, const PlotCase& plot, const std::string& scene) {
   const auto x = row.columns.find(plot.x.substr(7)), y = row.columns.find(plot.y.substr(7));
@@ -57,6 +50,12 @@ Drawing collect_columns(const Outcome& outcome, const PlotCase& plot, const std:
 }
 
 }  // namespace
+
+std::string with_device(std::string method, const std::string& device) {
+  const auto at = method.rfind("GPU");
+  if (at != std::string::npos && is_processor(device)) method.replace(at, 3, "llvmpipe (CPU)");
+  return method;
+}
 
 bool is_column(const std::string& axis) { return axis.starts_with("column."); }
 

@@ -23,6 +23,9 @@ struct Drawing {
   double floor = 0;  // least noise of the reference; 0 where there is none
 };
 
+// The name of a method with the device that it ran on: a software renderer is no GPU.
+std::string with_device(std::string method, const std::string& device);
+
 bool is_column(const std::string& axis);
 
 // The curves of a plot in a scene; `scene` is empty where one plot shows all scenes.

@@ -267,7 +267,7 @@ std::string latex_table(const RecordedRun& run, std::vector<std::string> metrics
     head += " & setting";
   }
   for (const Column& column : columns) {
-    layout += fmt::format("S[table-format={}]{}", column.format.layout(), column.intervals ? "@{\\,}l" : "");
+    layout += fmt::format("S[table-format={}]{}", column.format.layout(), column.intervals ? "@{\\enspace}l" : "");
     head += fmt::format(" & {{{}}}", header(column.metric));
     // Fewer than six timed runs cannot reach 95 %.
     if (column.intervals) head += is_timing(column.metric) ? " & {interval}" : " & {95\\,\\% interval}";
@@ -282,7 +282,7 @@ std::string latex_table(const RecordedRun& run, std::vector<std::string> metrics
     const bool next = i == 0 || rows[i - 1].scene != row.scene;
     if (next) out += "\\midrule\n";
     if (scenes.size() > 1) out += (next ? latex_text(row.scene) : "") + " & ";
-    out += latex_text(row.method);
+    out += latex_text(with_device(row.method, row.device));
     if (setting) out += " & " + latex_text(row.setting);
     for (const Column& column : columns) {
       out += " & " + cell(column, i);

@@ -125,7 +125,7 @@ TEST_CASE("results as a LaTeX table: the best is bold, and below noise says so",
 \sisetup{detect-weight}
 \caption{Steps, 100 \%. Scene: fog\_1; 16x12 pixels; profile quick; A CPU, 2 threads; airlight abc.}
 \label{tab:g/e}
-\begin{tabular}{llS[table-format=1.3]@{\,}lS[table-format=1.2]@{\,}l}
+\begin{tabular}{llS[table-format=1.3]@{\enspace}lS[table-format=1.2]@{\enspace}l}
 \toprule
 method & setting & {relative L2 error} & {95\,\% interval} & {time of one render {[}ms{]}} & {interval} \\
 \midrule
