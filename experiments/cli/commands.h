@@ -38,5 +38,8 @@ void add_serve(Commands&);
 void add_author(Commands&);
 void add_verify(Commands&);
 void add_doctor(Commands&);
+// The program's own commands and options, as a script for a shell and as manual pages.
+void add_completion(Commands&);
+void add_man(Commands&);
 
 }  // namespace airlight::experiments::cli
