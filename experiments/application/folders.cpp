@@ -20,9 +20,10 @@ bool is_root(const fs::path& folder) {
   return fs::exists(folder / "experiments" / "README.md", ignored);
 }
 
-// The folder, or one above it, that is the root of a project; empty if there is none.
+// The folder, or one above it, that is the root of a project, or whose share/airlight is one (cmake --install); empty if there is none.
 fs::path root_above(fs::path folder) {
   while (!is_root(folder)) {
+    if (const fs::path installed = folder / "share/airlight"; is_root(installed)) return installed;
     if (folder.empty() || folder == folder.root_path()) return {};
     folder = folder.parent_path();
   }

@@ -1,5 +1,7 @@
 #include "experiments/application/renderers.h"
 
+#include <algorithm>
+
 #include "experiments/application/find_component.h"
 #include "gpu/compensated_ray_marching/compensated_ray_marching.h"
 #include "gpu/fogshop/fogshop.h"
@@ -19,6 +21,8 @@
 #include "reference/half_resolution_march/half_resolution_march.h"
 #include "reference/path_tracer/renderer.h"
 #include "reference/ray_marcher/ray_marcher.h"
+#include "scene/base/content_key.h"
+#include "scene/base/read_file.h"
 
 namespace airlight::experiments {
 
@@ -52,16 +56,31 @@ Renderers& the_list() {
   return renderers;
 }
 
+// How many renderers the program has of its own; those beyond were added.
+std::size_t listed() {
+  static const std::size_t count = the_list().size();
+  return count;
+}
+
 }  // namespace
 
 const Renderers& all_renderers() { return the_list(); }
 
 AddedRenderer::AddedRenderer(std::unique_ptr<scene::Renderer> renderer) : renderer_(renderer.get()) {
+  listed();
   the_list().push_back(std::move(renderer));
 }
 
 AddedRenderer::~AddedRenderer() {
   std::erase_if(the_list(), [this](const auto& renderer) { return renderer.get() == renderer_; });
+}
+
+std::string added_code(const std::string& renderer) {
+  const auto& all = the_list();
+  const auto added = all.begin() + std::ptrdiff_t(listed());
+  if (std::none_of(added, all.end(), [&](const auto& one) { return one->name() == renderer; })) return "";
+  static const std::string key = content_key(scene::read_whole_file("/proc/self/exe"));
+  return key;
 }
 
 bool is_reference(const scene::Renderer& renderer) {

@@ -24,6 +24,9 @@ class AddedRenderer {
 
 std::vector<std::string> renderer_names();
 
+// Key of the program's own file if the renderer was added, since build_info.h does not know its sources; else empty.
+std::string added_code(const std::string& renderer);
+
 // Whether the renderer belongs to the folder reference/, which is built from scene/ and reference/ alone.
 bool is_reference(const scene::Renderer&);
 

@@ -45,6 +45,7 @@ Commands::Commands()
   app.footer(
       "Commands that may use a GPU (render, experiment run, gates, explain, choose, serve, verify, doctor) take --gpu WHICH.");
   app.allow_extras();
+  app.require_subcommand(0, 1);  // a further word that is a command's name is an argument
 }
 
 void Commands::add_data(CLI::App* command) {

@@ -24,6 +24,8 @@ void add_simulate(Commands&);
 // experiment list, run, plot.
 void add_experiment(Commands&);
 void add_gates(Commands&);
+// Figures of the records of finished experiments, for papers and notebooks (experiments/driver/export.h).
+void add_results(Commands&);
 // Which renderers can render a scene; with --method or --verbose their settings and stages.
 void add_explain(Commands&);
 // What a file holds: sizes, ranges and units.
@@ -36,5 +38,8 @@ void add_serve(Commands&);
 void add_author(Commands&);
 void add_verify(Commands&);
 void add_doctor(Commands&);
+// The program's own commands and options, as a script for a shell and as manual pages.
+void add_completion(Commands&);
+void add_man(Commands&);
 
 }  // namespace airlight::experiments::cli

@@ -303,7 +303,7 @@ void add_selection(CLI::App* c, ExperimentOptions& options) {
                 "quick: small films, a few runs of each row (default); paper: films and runs for publication");
 }
 
-void add_results(CLI::App* c, ExperimentOptions& options) {
+void add_results_folder(CLI::App* c, ExperimentOptions& options) {
   c->add_option("--results", options.results,
                 "folder of tables, plots, records and pictures (default: results/ of the project)")
       ->type_name("FOLDER");
@@ -312,7 +312,7 @@ void add_results(CLI::App* c, ExperimentOptions& options) {
 // Adds the options of commands that run experiments.
 void add_run(Commands& commands, CLI::App* c, ExperimentOptions& options) {
   add_selection(c, options);
-  add_results(c, options);
+  add_results_folder(c, options);
   c->add_option(
        "--cache", options.cache,
        "folder of references and simulated smoke, which all runs share (default: results/cache/ of the project)")
@@ -343,13 +343,13 @@ void add_experiment(Commands& commands) {
   commands.on(run, [options] { return run_experiments(*options); });
   CLI::App* plot = add_command(*experiment, "plot", "draw the plots of finished experiments again from their data");
   add_selection(plot, *options);
-  add_results(plot, *options);
+  add_results_folder(plot, *options);
   commands.on(plot, [options] { return plot_experiments(*options); });
   CLI::App* tables = add_command(*experiment, "tables",
                                  "write the tables of finished experiments again from their records, after an edit of "
                                  "claims or titles");
   add_selection(tables, *options);
-  add_results(tables, *options);
+  add_results_folder(tables, *options);
   commands.on(tables, [options] { return write_tables(*options); });
 }
 

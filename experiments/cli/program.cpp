@@ -65,8 +65,8 @@ const std::vector<std::pair<std::string, std::vector<void (*)(Commands&)>>> comm
     {"Pictures", {add_render, add_merge, add_compare}},
     {"Which method", {add_explain, add_choose, add_serve}},
     {"Media and flows", {add_info, add_convert, add_fit, add_author, add_simulate}},
-    {"Experiments", {add_experiment, add_gates, add_verify}},
-    {"This machine", {add_doctor}}};
+    {"Experiments", {add_experiment, add_gates, add_results, add_verify}},
+    {"This machine", {add_doctor, add_completion, add_man}}};
 
 int dispatch(int argc, char** argv) {
   Commands commands;

@@ -58,6 +58,7 @@ std::string row_key(const Experiment& e, const MethodCase& m, const scene::Compo
   parts.insert(parts.end(), e.metrics.begin(), e.metrics.end());
   parts.push_back(fmt::format("{} {} {}", m.picture_only, m.count_noise, m.moving ? canonical(*m.moving) : ""));
   if (m.anew) parts.push_back("anew");
+  if (const std::string code = added_code(component.name()); !code.empty()) parts.push_back(code);
   for (const Moving::What what : e.moves) parts.push_back(name_of(what));
   const std::string device = component.device();
   parts.push_back(device);

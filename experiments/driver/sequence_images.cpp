@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "experiments/application/interrupt.h"
+#include "experiments/driver/comparisons.h"
 #include "experiments/driver/keeper.h"
 #include "experiments/driver/pictures.h"
 #include "experiments/driver/plan.h"

@@ -69,7 +69,9 @@
         ...set.scenes.map((_, s) => cell(set.rows.filter(r => r.s === s && r.m === m), method, fronts[s])),
         element("td", { className: "number" }, wins ? `${wins} of ${set.scenes.length}` : ""));
     });
-    return element("div", { className: "scroll" }, element("table", {}, element("thead", {}, head), element("tbody", {}, ...body)));
+    const rows = [head, ...body].map(row => [...row.children].map(cell => cell.textContent));
+    return element("div", { className: "scroll" }, saveTable(`${set.words}, ${data.metrics[state.metric]}`, rows),
+      element("table", {}, element("thead", {}, head), element("tbody", {}, ...body)));
   };
 
   // The papers' methods in colours, as published hollow; what engines do and the references in greys.
@@ -132,7 +134,13 @@
       mark.append(svg("title", {}, describe(r, set.methods[r.m])));
       picture.append(mark);
     }
-    return element("figure", {}, picture);
+    const numbers = set.methods.map((method, m) => rows.filter(r => r.m === m)).filter(of => of.length).map(of =>
+      [false, true].map(bound => of.filter(r => hidden(error(r)) === bound).map(r => {
+        const t = r.t[state.moves], values = bound ? Array(3).fill(most(error(r))) : error(r);
+        return csvText([[set.methods[r.m], t, t, t, ...values, floor].map(String)]);
+      }).join("") || csvText([[set.methods[of[0].m], ...Array(7).fill("")]])).map(block => block + "\n\n").join("")).join("");
+    return element("figure", {}, picture,
+      savePlot(`relative L2 error against ${axis}: ${set.scenes[s]}`, "# curve,x,x_low,x_high,y,y_low,y_high,floor\n" + numbers));
   };
 
   const legend = set => {

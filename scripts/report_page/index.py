@@ -76,6 +76,12 @@ def tables_of(folder, run):
             yield table.get("title", table["file"]), [papers.cells(line) for line in lines]
 
 
+def data_of(plot):
+    """The numbers behind a plot, where they are kept beside it."""
+    path = plot.removesuffix(".svg") + ".csv"
+    return read_text(path) if os.path.exists(path) else ""
+
+
 class Record:
     """A run.json: its row of the index."""
 
@@ -103,7 +109,7 @@ class Record:
         content = content_of(self.entries, gallery) | {
             "about": run.get("about", ""), "sized": JOINT.join(filter(None, [film, *devices, profile])),
             "tables": [[title, [[say(cell) for cell in row] for row in rows]] for title, rows in tables_of(self.folder, run)],
-            "plots": [[title, read_text(path)] for title, path in plots if os.path.exists(path)],
+            "plots": [[title, read_text(path), data_of(path)] for title, path in plots if os.path.exists(path)],
             "gates": [[kind, say(str(gate.get("text") or gate.get("name")))] for kind, gate in zip(kinds, gates)],
             "record": {k: v for k, v in run.items() if k not in ("pictures", "plots", "tables", "gates", "about", "title", "rows")}}
         failed, passed = kinds.count("failed"), kinds.count("ok")

@@ -38,14 +38,17 @@
       add(add(host, "a", { href: src }), "img", { src, alt: src.replace(/.*\/|\.png/g, "").replaceAll("_", " "), className: "gallery" });
     for (const [i, [title, rows]] of (data.tables || []).entries())
       folded(host, `${title} (${rows.length - 1} rows)`, details => {
-        add(details, "p", { className: "about", textContent: data.sized });
+        add(details, "p", { className: "about", textContent: data.sized }).append(saveTable(title, rows));
         table(details, rows);
       }, i === 0 && rows.length <= 60);
     if (data.plots && data.plots.length) {
       add(host, "p", { className: "about", textContent: `Plots: ${data.sized}` });
       const plots = add(host, "div", { className: "plots" });
-      for (const [title, svg] of data.plots)
-        add(add(plots, "figure"), "img", { src: URL.createObjectURL(new Blob([svg], { type: "image/svg+xml" })), alt: title });
+      for (const [title, svg, numbers] of data.plots) {
+        const figure = add(plots, "figure");
+        add(figure, "img", { src: URL.createObjectURL(new Blob([svg], { type: "image/svg+xml" })), alt: title });
+        if (numbers) figure.append(savePlot(title, numbers));
+      }
     }
     if (data.gates && data.gates.length)
       folded(host, `Gates (${data.gates.length})`, details => {

@@ -6,6 +6,7 @@ import glob
 import html.parser
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -76,6 +77,45 @@ class Report(unittest.TestCase):
                     self.assertEqual(len(rows), len(list(csv.reader(stream))), name)
             if run["profile"]:
                 self.assertIn(f"profile {run['profile']}", content["sized"], name)
+
+    @unittest.skipUnless(shutil.which("node"), "there is no node")
+    def test_tables_and_plots_can_be_saved_as_csv_and_latex(self):
+        with open(f"{SOURCE}/scripts/report_page/export.js", encoding="utf-8") as stream:
+            script = stream.read() + """
+console.log(csvText([["a,b", 'c"d'], ["#1", "2"]]));
+console.log(latexTable("A_b", [["x", "y"], ["1 %", "<2>"]]));
+console.log(latexPlot("error against steps [1]: fog", "# curve,x,x_low,x_high,y,y_low,y_high,floor\\n" +
+  '"a, b",1,1,1,0.5,0.4,0.6,0\\n"a, b",10,10,10,0.25,0.2,0.3,0\\n\\n\\n"a, b",20,20,20,0.125,0.125,0.125,0\\n\\n\\n'));"""
+        done = subprocess.run(["node", "-"], input=script, capture_output=True, text=True)
+        self.assertEqual(done.stderr, "")
+        self.assertEqual(done.stdout, r"""
+"a,b","c""d"
+"#1",2
+
+% \usepackage{booktabs}
+\begin{table}
+\centering
+\caption{A\_b}
+\begin{tabular}{ll}
+\toprule
+x & y \\
+\midrule
+1 \% & \textless{}2\textgreater{} \\
+\bottomrule
+\end{tabular}
+\end{table}
+
+% \usepackage{pgfplots} \pgfplotsset{compat=1.18}
+\begin{tikzpicture}
+\begin{axis}[title={error against steps {[}1{]}: fog}, xlabel={steps {[}1{]}}, ylabel={error},
+  xmode=log, ymode=normal, legend pos=outer north east]
+\addplot coordinates {(1,0.5) (10,0.25)};
+\addlegendentry{a, b}
+\addplot[only marks, mark=triangle, mark options={rotate=180}, forget plot] coordinates {(20,0.125)};  % below noise: upper bounds
+\end{axis}
+\end{tikzpicture}
+
+""".lstrip())
 
     def test_the_headline_comes_first(self):
         sections = [a["id"] for tag, a in self.page.elements if tag == "section" and "id" in a]

@@ -1,0 +1,27 @@
+# find_package(airlight): libraries of airlight for programs of others.
+#   airlight::scene, airlight::methods, airlight::reference, airlight::gpu   render scenes
+#   airlight::airlight                                                      all commands of the program, for methods of your own
+include(CMakeFindDependencyMacro)
+find_dependency(TBB CONFIG)
+find_dependency(embree 3.13 CONFIG)
+find_dependency(Eigen3 3.4 CONFIG)
+find_dependency(Ceres 2.1 CONFIG)
+find_dependency(OpenEXR 3.1 CONFIG)
+find_dependency(tomlplusplus CONFIG)
+find_dependency(CLI11 CONFIG)
+find_dependency(fmt CONFIG)
+find_dependency(nlohmann_json CONFIG)
+find_dependency(PNG)
+find_dependency(PkgConfig)
+pkg_check_modules(HWY REQUIRED IMPORTED_TARGET libhwy)
+pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
+pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)
+pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3)
+pkg_check_modules(FFTWF REQUIRED IMPORTED_TARGET fftw3f)
+
+include("${CMAKE_CURRENT_LIST_DIR}/airlightTargets.cmake")
+if(NOT TARGET airlight::airlight)
+  add_library(airlight::airlight INTERFACE IMPORTED)
+  target_link_libraries(airlight::airlight INTERFACE airlight::experiments)
+  target_sources(airlight::airlight INTERFACE $<TARGET_OBJECTS:airlight::without_studies> $<TARGET_OBJECTS:airlight::processor>)
+endif()
