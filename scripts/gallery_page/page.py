@@ -1,6 +1,8 @@
 """Words for what a panel of the gallery shows, and the page results/gallery/README.md."""
 import json
 
+from picture import NEAR
+
 LIGHT = {"once": "light scattered once", "all orders": "all orders of scattering", "none": "no scattered light"}
 
 
@@ -91,5 +93,10 @@ and writes this page.
                          "; ".join(t for t in (settings, changed) if t) or "defaults", error_text(frame), took]
                 out += f"| {' | '.join(cells)} |\n"
         scenes = dict.fromkeys(f"`{s['file'].removeprefix('scenes/')}`" for s in picture["scene"])
+        moves = [f"`{key}` from {toml_value(values[0])} to {toml_value(values[-1])}" for key, values in picture["film"].items()]
+        if moves:
+            count = len(next(iter(picture["film"].values())))
+            out += f"\nThe picture is a looping film of {count} frames, {picture['rate']:g} a second: {', '.join(moves)}. "
+            out += f"A pixel that changes by {NEAR} or less of 255 levels stays as it is.\n"
         out += f"\nScenes: {', '.join(scenes)}. {film_line(picture, record)}"
     return out.rstrip("\n") + "\n"

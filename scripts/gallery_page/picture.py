@@ -19,12 +19,15 @@ def chunks(png):
         at += size + 12
 
 
+def chunk(kind, content):
+    return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
+
+
 def with_texts(png, texts):
     """The PNG with these texts behind its header, in place of any that were there."""
     kept = [(kind, content) for kind, content in chunks(png) if kind != b"tEXt"]
     kept[1:1] = [(b"tEXt", name + b"\0" + text) for name, text in texts.items()]
-    return png[:8] + b"".join(struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
-                              for kind, content in kept)
+    return png[:8] + b"".join(chunk(kind, content) for kind, content in kept)
 
 
 def read_pfm(path):
@@ -111,13 +114,91 @@ def draw_scale(canvas, left, top, width, map_top):
     canvas.image(left + 2, top + 58, width - 4, 16, ramp(width - 4, 16))
 
 
+GAP, HEAD = 4, 44  # pixels between panels, and of the labels over one
+
+
+def caption_lines(picture, note, width):
+    return [line for text in (picture["caption"], note) for line in textwrap.wrap(text, width // 8)]
+
+
+def top_of(caption):
+    """Where the first row begins [pixels from the top]."""
+    return 32 + 19 * len(caption)
+
+
+def strip_at(picture, columns, note):
+    """Left and top pixel of the panels of a picture that has one row."""
+    return GAP, top_of(caption_lines(picture, note, columns * (picture["width"] + GAP) + GAP)) + HEAD
+
+
+def side_by_side(panels, width):
+    """Rows of pixels from the top, of panels whose row 0 is at the bottom, with white between the panels."""
+    size = 3 * width
+    starts = range(len(panels[0]) - size, -1, -size)
+    return [(b"\xff" * 3 * GAP).join(panel[at:at + size] for panel in panels) for at in starts]
+
+
+def compressed(rows):
+    """Data of a PNG image of 8-bit RGB: each row less the pixel to the left or the row above, whichever leaves the smaller numbers."""
+    data, above = bytearray(), bytes(len(rows[0]))
+    for row in rows:
+        left = bytes(3) + row[:-3]
+        filtered = [bytes((a - b) & 255 for a, b in zip(row, other)) for other in (left, above)]
+        sums = [sum(min(v, 256 - v) for v in values) for values in filtered]
+        best = sums.index(min(sums))
+        data += bytes([1 + best]) + filtered[best]
+        above = row
+    return zlib.compress(bytes(data), 9)
+
+
+def pixels_of(row):
+    return [row[i:i + 3] for i in range(0, len(row), 3)]
+
+
+NEAR = 2  # of 255: a pixel of a film that changes by no more stays as it is
+
+
+def is_near(a, b):
+    return a == b or max(abs(p - q) for p, q in zip(a, b)) <= NEAR
+
+
+def animated(png, strips, at, rate):
+    """A looping film (APNG): the PNG is its first frame, which shows the first strip at the pixel `at`; the later strips replace it. Pixels
+    that stay as they are have a colour of their own, which is transparent and needs little space."""
+    width, height = struct.unpack(">II", png[16:24])
+    colours = {pixel for rows in strips for row in rows for pixel in pixels_of(row)}
+    kept = next(c for c in (bytes([255, green, 255]) for green in range(256)) if c not in colours)
+    shows, changes = [pixels_of(row) for row in strips[0]], []
+    for strip in strips[1:]:
+        rows = [[kept if is_near(new, old) else new for new, old in zip(pixels_of(row), before)] for row, before in zip(strip, shows)]
+        shows = [[old if new == kept else new for new, old in zip(row, before)] for row, before in zip(rows, shows)]
+        changes.append([b"".join(row) for row in rows])
+    out, number = png[:8], 0
+
+    def control(w, h, x, y):
+        nonlocal number
+        number += 1
+        return chunk(b"fcTL", struct.pack(">IIIIIHHBB", number - 1, w, h, x, y, round(1000 / rate), 1000, 0, 1))
+
+    for kind, content in chunks(png):
+        if kind == b"IDAT" and not number:
+            out += chunk(b"tRNS", struct.pack(">3H", *kept)) + chunk(b"acTL", struct.pack(">II", len(strips), 0))
+            out += control(width, height, 0, 0)
+        if kind == b"IEND":
+            for rows in changes:
+                out += control(len(rows[0]) // 3, len(rows), *at) + chunk(b"fdAT", struct.pack(">I", number) + compressed(rows))
+                number += 1
+        out += chunk(kind, content)
+    return out
+
+
 def compose(picture, panels, columns, note, out, folder):
     """The panels in rows, labels over them, maps of their errors below, by gnuplot."""
-    w, h, gap, head, map_head = picture["width"], picture["height"], 4, 44, 24
+    w, h, gap, head, map_head = picture["width"], picture["height"], GAP, HEAD, 24
     width = columns * (w + gap) + gap
-    caption = [line for text in (picture["caption"], note) for line in textwrap.wrap(text, width // 8)]
+    caption = caption_lines(picture, note, width)
     rows = [panels[i:i + columns] for i in range(0, len(panels), columns)]
-    tops, height = [], 32 + 19 * len(caption)
+    tops, height = [], top_of(caption)
     for row in rows:
         tops.append(height)
         height += head + h + (map_head + max(h, SCALE_HEIGHT) if any(p["map"] for p in row) else 0)

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import zlib
 
 SOURCE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 SCRIPTS = os.environ.get("AIRLIGHT_TESTED_SCRIPTS", f"{SOURCE}/scripts")  # tests/mutants plants bugs in copies
@@ -458,6 +459,29 @@ class Gallery(Tree):
         self.assertEqual(self.read("build/release/log").count("--map "), 1)
         self.assertEqual(height - self.height(), 24 + 80)  # a line of text, and the scale, which is higher than the map
 
+    def test_a_film(self):
+        film = 'maps = false\nrate = 5\nfilm = { "light.0.scale" = [1, 2, 3] }'
+        self.write("experiments/gallery.toml", GALLERY.replace("height = 2", f"height = 2\n{film}"))
+        code, text = self.run_script("gallery")
+        self.assertEqual(code, 0, text)
+        self.assertEqual(self.run_script("gallery", "--check"), (0, "1 pictures, 0 faults\n"))
+        self.assertEqual([next(v for v in r if v.startswith("light")) for r in self.renders()],
+                         [f"light.0.scale={scale}" for scale in (1, 1, 2, 2, 3, 3)])
+        self.assertIn("a looping film of 3 frames, 5 a second: `light.0.scale` from 1 to 3.", self.read("results/gallery/README.md"))
+        with open(f"{self.root}/results/gallery/one.png", "rb") as stream:
+            parts = list(self.module("picture", "scripts/gallery_page/picture.py").chunks(stream.read()))
+        kinds = [kind for kind, _ in parts if kind in (b"acTL", b"fcTL", b"fdAT")]
+        self.assertEqual(kinds, [b"acTL", b"fcTL", b"fcTL", b"fdAT", b"fcTL", b"fdAT"])
+        self.assertEqual([int.from_bytes(c[:4], "big") for kind, c in parts if kind in (b"fcTL", b"fdAT")], [0, 1, 2, 3, 4])
+        later = [c for kind, c in parts if kind == b"fcTL"][1]
+        self.assertEqual([int.from_bytes(later[i:i + 4], "big") for i in (4, 8, 12, 16)], [964, 2, 4, 114])  # two panels and what is between
+        data = zlib.decompress([c for kind, c in parts if kind == b"fdAT"][0][4:])
+        self.assertEqual([c for kind, c in parts if kind == b"tRNS"], [b"\0\xff\0\0\0\xff"])  # what does not change: here every pixel
+        row = b"\xff\0\xff" * 964
+        self.assertEqual((data[0], data[1 + 964 * 3]), (1, 2))  # less the pixel to the left, less the row above
+        self.assertEqual(data[1:1 + 964 * 3], bytes((a - b) & 255 for a, b in zip(row, bytes(3) + row)))
+        self.assertEqual(data[2 + 964 * 3:], bytes(964 * 3))
+
     def height(self):
         with open(f"{self.root}/results/gallery/one.png", "rb") as stream:
             return int.from_bytes(stream.read(24)[20:], "big")
@@ -513,6 +537,8 @@ class Gallery(Tree):
                 ("caption = \"a picture\"\n", "", "gallery.toml:1: a picture has no 'caption'"),
                 ("height = 2", "height = 0", "gallery.toml:1: 'height' is 0, expected 1 to 1024"),
                 ("height = 2", "height = 2\nwidth = 0", "gallery.toml:1: 'width' is 0, expected 1 to 1024"),
+                ("height = 2", 'height = 2\nmaps = false\nfilm = { "a.b" = [1, 2], "a.c" = [1] }', "gallery.toml:1: each key of 'film' needs a list"),
+                ("height = 2", 'height = 2\nfilm = { "a.b" = [1, 2] }', "gallery.toml:1: a film has one scene, maps = false, and no"),
                 ("title = ", "title ", "experiments/gallery.toml: Expected '='")):
             self.write("experiments/gallery.toml", GALLERY.replace(old, new))
             self.assertEqual(self.objects(2, word, "--check").count("\n"), 1)
