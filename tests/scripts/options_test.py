@@ -292,6 +292,18 @@ class Build(Machine):
         self.assertTrue(self.calls("ctest")[-1].endswith("-j 3 --label-exclude thorough"))
         self.assertEqual(self.run_script("test", "--all")[0], 0)
         self.assertNotIn("thorough", self.calls("ctest")[-1])
+        with open(f"{self.root}/build/release/airlight", "w") as stream:
+            stream.write(f'#!/bin/bash\necho "airlight $*" >>"{self.root}/log"\n')
+        self.assertEqual(self.run_script("test", "--junit", f"{self.root}/reports")[0], 0)
+        self.assertTrue(self.calls("ctest")[-1].endswith(f"--output-junit {self.root}/reports/tests.xml"))
+        self.assertTrue(self.calls("airlight")[-1].endswith(f"--junit {self.root}/reports/gates.xml"))
+        self.assertEqual(self.run_script("test", "--shard", "2/3")[0], 0)
+        self.assertIn("--tests-information 2,,3", self.calls("ctest")[-1])
+        self.assertEqual(len(self.calls("airlight")), 1)  # part 1 judges the gates
+        for wrong in ("3/2", "0/2", "2", ""):
+            code, out, err = self.run_script("test", "--shard", wrong)
+            self.assertEqual((code, out), (2, ""), wrong)
+            self.assertIn("--shard needs I/N", err)
 
 
 if __name__ == "__main__":
