@@ -13,16 +13,28 @@ namespace airlight::experiments {
 namespace {
 
 std::atomic<int> signals{0};
-std::atomic<bool> stopped{false};
+std::atomic<bool> stopped{false}, end_of_rows{false};
 std::mutex reason_mutex;
 std::string reason;
-static_assert(std::atomic<int>::is_always_lock_free);
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 
 extern "C" void on_signal(int) {
   if (++signals > 1) _exit(130);
 }
 
+extern "C" void on_end_of_rows(int) { end_of_rows = true; }
+
 }  // namespace
+
+void catch_end_of_rows() {
+  struct sigaction action {};
+  action.sa_handler = on_end_of_rows;
+  sigemptyset(&action.sa_mask);
+  action.sa_flags = SA_RESTART;
+  sigaction(SIGUSR1, &action, nullptr);
+}
+
+bool rows_end() { return end_of_rows; }
 
 void catch_interrupts() {
   struct sigaction action {};

@@ -17,6 +17,10 @@ std::string stopped_by();  // empty: by a signal, or not at all
 // Throws scene::Interrupted if a signal came or the time that --limit allows is over, Error if stop_with was called.
 void check_interrupted();
 
+// Asks for an orderly end by SIGUSR1, as batch systems send it before the time of a task is over: rows_end() is true from then on.
+void catch_end_of_rows();
+bool rows_end();
+
 // Settings for a render that only watches for signals.
 scene::Execution quiet_execution(int threads);
 

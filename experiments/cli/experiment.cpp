@@ -15,6 +15,7 @@
 #include "experiments/driver/expected.h"
 #include "experiments/driver/junit.h"
 #include "experiments/driver/margins.h"
+#include "experiments/driver/parts.h"
 #include "experiments/driver/plots.h"
 #include "experiments/driver/run.h"
 #include "experiments/driver/run_progress.h"
@@ -31,10 +32,13 @@ struct ExperimentOptions {
   std::string results, cache;  // folders; empty: results and results/cache below root
   std::vector<std::string> names;
   bool resume = false;
-  bool gates_only = false;        // experiments without gates are left out
-  bool in_tests = false;          // experiments without in_tests = true are left out
-  bool margins = false;           // how far each gate is from failing
-  bool fresh_references = false;  // first makes all committed references of these experiments anew
+  bool gates_only = false;         // experiments without gates are left out
+  bool in_tests = false;           // experiments without in_tests = true are left out
+  bool margins = false;            // how far each gate is from failing
+  std::string rows, journal;       // of a part: "I/N", and the folder of its rows and pictures
+  std::string gathered;            // an experiment
+  std::vector<std::string> parts;  // folders of parts that are gathered
+  bool fresh_references = false;   // first makes all committed references of these experiments anew
   int threads = 0;
 };
 
@@ -50,7 +54,17 @@ std::string gates_text(const std::vector<GateResult>& gates) {
 }
 
 Folders folders_of(const ExperimentOptions& options) {
-  return {project_root(options.root), options.results, options.cache};
+  return {project_root(options.root), options.journal.empty() ? options.results : options.journal, options.cache};
+}
+
+// "I/N", I from 1 to N. Throws Error for anything else.
+RowShare share_of(const std::string& text) {
+  RowShare share;
+  int end = 0;
+  if (std::sscanf(text.c_str(), "%6d/%6d%n", &share.part, &share.parts, &end) != 2 || end != int(text.size()) ||
+      share.part < 1 || share.part > share.parts)
+    throw Error(fmt::format("--rows '{}': expected I/N with I from 1 to N, e.g. 2/8", text));
+  return share;
 }
 
 // The path as a user would type it.
@@ -170,6 +184,50 @@ int list_experiments(const ExperimentOptions& options) {
   }
   fmt::print("{}", lines);
   return 0;
+}
+
+// Every N-th row of one experiment, into a journal of its own that `gather` reads. Goes on with a journal that is there.
+int run_part(const ExperimentOptions& options) {
+  check_profile(options);
+  if (options.rows.empty() || options.journal.empty())
+    throw Error("--rows I/N and --journal FOLDER belong together: one of them is missing");
+  if (!options.results.empty() || options.fresh_references)
+    throw Error("--rows: --results and --fresh-references are not for parts of an experiment");
+  const RowShare share = share_of(options.rows);
+  if (options.names.size() != 1) throw Error("--rows: expected one experiment, group/name");
+  const Folders folders = folders_of(options);
+  catch_end_of_rows();
+  std::vector<Experiment> experiments = read_and_check(options, folders, true);
+  if (experiments.size() != 1)
+    throw Error(fmt::format("--rows: expected one experiment, found {}", experiments.size()));
+  RunProgress progress(planned_work(experiments, folders.root / "results"));
+  progress.begin(0);
+  RunOptions run{folders, true, options.threads, true, true, &progress, false};
+  run.share = share;
+  const Outcome outcome = run_experiment(std::move(experiments.front()), run);
+  progress.end();
+  fmt::print("  {} rows of part {}: {}\n", outcome.rows.size(), options.rows,
+             journal_file(folders, outcome.experiment).string());
+  return 0;
+}
+
+// Tables of one experiment from parts that were computed anywhere with this program on processors of this kind.
+int gather(const ExperimentOptions& options) {
+  check_profile(options);
+  require(options.gathered, "NAME");
+  if (options.parts.empty()) throw Error("FOLDER is missing; see --help");
+  const Folders folders = folders_of(options);
+  std::vector<Experiment> experiments = read_and_check(options, folders, true);
+  if (experiments.size() != 1)
+    throw Error(fmt::format("gather: expected one experiment, found {}", experiments.size()));
+  const Experiment& e = experiments.front();
+  take_over_parts(folders, e, options.parts);
+  RunOptions run{folders, true, options.threads, false, true};
+  run.gather = true;
+  const Outcome outcome = run_experiment(e, run);
+  fmt::print("{} rows of {} folders, {}: {}/table.md\n", outcome.rows.size(), options.parts.size(),
+             gates_text(outcome.gates), shown(folders, results_name(e.id, e.profile)));
+  return name_failures(outcome.gates);
 }
 
 // All files, scenes and settings are checked before anything is computed; exit code 1 names gates that failed.
@@ -295,12 +353,23 @@ int gates(const ExperimentOptions& options) {
   }
 }
 
-void add_selection(CLI::App* c, ExperimentOptions& options) {
-  c->add_option("NAME", options.names, "experiments: group/name, or a whole group (default: all)");
+void add_root_and_profile(CLI::App* c, ExperimentOptions& options) {
   c->add_option("--root", options.root,
                 "folder of the project (default: found above the current folder, else above the program)");
   c->add_option("--profile", options.profile,
                 "quick: small films, a few runs of each row (default); paper: films and runs for publication");
+}
+
+void add_selection(CLI::App* c, ExperimentOptions& options) {
+  c->add_option("NAME", options.names, "experiments: group/name, or a whole group (default: all)");
+  add_root_and_profile(c, options);
+}
+
+void add_cache(CLI::App* c, ExperimentOptions& options) {
+  c->add_option(
+       "--cache", options.cache,
+       "folder of references and simulated smoke, which all runs share (default: results/cache/ of the project)")
+      ->type_name("FOLDER");
 }
 
 void add_results_folder(CLI::App* c, ExperimentOptions& options) {
@@ -313,10 +382,7 @@ void add_results_folder(CLI::App* c, ExperimentOptions& options) {
 void add_run(Commands& commands, CLI::App* c, ExperimentOptions& options) {
   add_selection(c, options);
   add_results_folder(c, options);
-  c->add_option(
-       "--cache", options.cache,
-       "folder of references and simulated smoke, which all runs share (default: results/cache/ of the project)")
-      ->type_name("FOLDER");
+  add_cache(c, options);
   c->add_option("--threads", options.threads, "number of threads (default 0: all)")->check(CLI::Range(0, 4096));
   commands.add_limit(c);
   commands.add_data(c);
@@ -340,7 +406,29 @@ void add_experiment(Commands& commands) {
   run->add_flag("--fresh-references", options->fresh_references,
                 "first compute the committed references of these experiments anew and replace their films in "
                 "experiments/data/references");
-  commands.on(run, [options] { return run_experiments(*options); });
+  run->add_option("--rows", options->rows,
+                  "I/N: compute only part I of N, every N-th row of one experiment, for computers that share the work; "
+                  "SIGUSR1 ends it after the row in hand with exit code 130, and the same command goes on");
+  run->add_option("--journal", options->journal, "folder of the rows and pictures of this part, for --rows")
+      ->type_name("FOLDER");
+  commands.on(run, [options] {
+    return options->rows.empty() && options->journal.empty() ? run_experiments(*options) : run_part(*options);
+  });
+  CLI::App* gathered =
+      add_command(*experiment, "gather", "write the tables of an experiment whose rows were computed in parts");
+  gathered->add_option("NAME", options->gathered, "the experiment: group/name (required)");
+  gathered->add_option("FOLDER", options->parts, "folders that --journal named (required)");
+  add_root_and_profile(gathered, *options);
+  add_results_folder(gathered, *options);
+  add_cache(gathered, *options);
+  gathered->add_option("--threads", options->threads, "number of threads that the parts had (default 0: all)")
+      ->check(CLI::Range(0, 4096));
+  commands.add_data(gathered);
+  commands.add_gpu(gathered);
+  commands.on(gathered, [options] {
+    options->names = {options->gathered};
+    return gather(*options);
+  });
   CLI::App* plot = add_command(*experiment, "plot", "draw the plots of finished experiments again from their data");
   add_selection(plot, *options);
   add_results_folder(plot, *options);

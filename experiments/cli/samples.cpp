@@ -101,6 +101,8 @@ int merge(const MergeOptions& options) {
     const std::size_t equals = word.find('=');
     given[word.substr(0, equals)] = equals == std::string::npos ? "" : word.substr(equals + 1);
   }
+  const std::uint64_t least = samples.least_samples();
+  if (least > 0) given["samples"] = std::to_string(least);
   const scene::Settings settings(path_tracer::setting_specs(), given, options.parts.front());
   const auto scene = std::make_shared<const scene::Scene>(scene::load_scene(options.scene, options.overrides));
   const path_tracer::World world(scene, path_tracer::parse_options(settings));
@@ -113,7 +115,10 @@ int merge(const MergeOptions& options) {
   if (!differs.empty())
     throw Error(fmt::format("{} and {} do not belong together: {}", options.parts.front(), options.scene, differs));
   scene::Film film = path_tracer::to_film(world, view, samples);
+  // As `render` writes them.
   film.metadata["commit"] = commit();
+  film.metadata["settings"] = settings.canonical();
+  film.metadata["complete"] = film.metadata.at("samples") == std::to_string(least) ? "true" : "false";
   scene::write_exr(options.out, film);
   path_tracer::write_range_file(options.out + ".samples", samples);
   return 0;

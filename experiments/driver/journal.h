@@ -21,6 +21,8 @@ class Journal {
   // The row of that key, if it was finished.
   const Row* find(const std::string& key) const;
 
+  const std::map<std::string, Row>& rows() const { return rows_; }  // by key
+
   // Appends and flushes to the disk; makes the folder. Throws scene::CannotWrite.
   void add(const Row&);
 

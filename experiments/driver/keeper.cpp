@@ -98,6 +98,9 @@ Outcome RowKeeper::run(const Plan& plan) {
   }
   outcome_.complete = !stopped && !failure;
   outcome_.seconds = steady_seconds() - start;
+  if (options_.gather && !failure && !missing_.empty())
+    throw Error(fmt::format("{}: {} of {} rows are missing, the first is '{}'", name_, missing_.size(), planned_,
+                            missing_.front()));
   outcome_.gates = judge(outcome_.experiment, outcome_.rows);
   if (!outcome_.rows.empty() && options_.tables) write();
   if (stopped) throw scene::Interrupted("interrupted");
@@ -126,13 +129,17 @@ RunProgress::Step RowKeeper::reference_step(const SceneCase& c) {
 
 // Rows that are finished are kept; the others are made in groups, and timed in turns.
 void RowKeeper::measure(std::vector<RowPlan> plans) {
+  std::erase_if(plans, [&](const RowPlan&) {
+    const int number = planned_++;
+    return options_.share && number % options_.share->parts != options_.share->part - 1;
+  });
   std::vector<std::optional<Row>> rows(plans.size());
   std::exception_ptr failure;
   try {
     std::vector<Held> group;
     double memory = resident_gib();
     std::optional<Error> error;
-    for (std::size_t i = 0; i < plans.size() && !error; ++i) {
+    for (std::size_t i = 0; i < plans.size() && !error && !rows_end(); ++i) {
       check_interrupted();
       try {
         make(plans[i], i, group, rows);
@@ -147,6 +154,7 @@ void RowKeeper::measure(std::vector<RowPlan> plans) {
     }
     time_group(group, rows);
     if (error) throw Error(*error);
+    if (rows_end()) throw scene::Interrupted("interrupted");
   } catch (...) {
     failure = std::current_exception();
   }
@@ -170,6 +178,10 @@ void RowKeeper::make(RowPlan& plan, std::size_t place, std::vector<Held>& group,
     say(*finished, "kept");
     return;
   }
+  if (options_.gather) {
+    missing_.push_back(title_of(row));
+    return;
+  }
   RunProgress::Step step(progress_, title_of(row), making_work());
   try {
     Held held{place, plan.make(row, step.execution(experiment().timing.threads)), {}};
@@ -186,7 +198,8 @@ void RowKeeper::make(RowPlan& plan, std::size_t place, std::vector<Held>& group,
     row.note = std::string("not available on this machine: ") + reason.what();  // the others go on
     row.unavailable = dynamic_cast<const NoDataFolder*>(&reason) ||
                       (dynamic_cast<const NoDevice*>(&reason) && !gpu::Context::device_was_chosen());
-    rows[place] = row;  // not into the journal: the next run may find what is missing
+    rows[place] = row;
+    if (options_.share) journal_.add(row);  // else not: the next run may find what is missing
     say(row, "left out");
   }
 }

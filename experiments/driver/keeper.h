@@ -72,7 +72,9 @@ class RowKeeper {
   std::string name_;
   Journal journal_;
   Outcome outcome_;
-  bool made_rows_ = false;  // not all of them were kept
+  bool made_rows_ = false;            // not all of them were kept
+  int planned_ = 0;                   // rows so far
+  std::vector<std::string> missing_;  // titles of rows that nobody has finished, when gathering
 };
 
 }  // namespace airlight::experiments

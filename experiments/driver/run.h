@@ -1,6 +1,7 @@
 // Runs an experiment: references, methods, errors, times; then tables, plots, pictures and the record.
 #pragma once
 #include <filesystem>
+#include <optional>
 
 #include "experiments/application/folders.h"
 #include "experiments/driver/outcome.h"
@@ -8,6 +9,11 @@
 namespace airlight::experiments {
 
 class RunProgress;
+
+// Part `part` of `parts`, counted from 1: every parts-th row in the order of the table, and no tables.
+struct RowShare {
+  int part = 1, parts = 1;
+};
 
 struct RunOptions {
   Folders folders;
@@ -18,6 +24,8 @@ struct RunOptions {
   RunProgress* progress = nullptr;  // where this experiment has begun; null: of its own
   bool tables = true;               // false: only gates are wanted, so no tables, plots and record are written
   bool trials = true;               // check_experiment renders small pictures; false: it loads and plans alone
+  std::optional<RowShare> share = {};
+  bool gather = false;  // every row must be finished: throws Error that says how many are missing, and writes nothing
 };
 
 // Checks before anything is written whether the experiment can be computed as its file says. Simulates

@@ -144,6 +144,12 @@ TEST_CASE("ranges of samples merge to the bits of one render", "[cli]") {
   const auto merged = airlight::scene::read_exr(folder.file("merged.exr"));
   CHECK(whole.layers == merged.layers);
   CHECK(merged.metadata.at("sample_ranges") == "0..192");
+  CHECK(merged.metadata.at("complete") == "true");
+  for (const auto& [name, value] : whole.metadata) {
+    CAPTURE(name);
+    if (name != "seconds") CHECK(merged.metadata.at(name) == value);
+  }
+  CHECK(merged.metadata.size() == whole.metadata.size());
 
   const auto refused = [&](const std::string& arguments, const std::string& says) {
     const Result r = run("merge " + arguments, folder);
