@@ -20,7 +20,7 @@ class Recipes(unittest.TestCase):
         for recipe in ("Dockerfile", "airlight.def"):
             text = read(f"scripts/container/{recipe}")
             steps = re.findall(r"^\s*(?:RUN )?(\S*/(?:build|run)_stage /opt/airlight)$", text, re.M)
-            self.assertEqual(steps, ["scripts/container/build_stage /opt/airlight", "/tmp/run_stage /opt/airlight"], recipe)
+            self.assertEqual(steps, ["scripts/container/build_stage /opt/airlight", "/opt/run_stage /opt/airlight"], recipe)
             self.assertEqual(len(re.findall("^(?:FROM|From:) ?debian:12", text, re.M)), 2, recipe)
         for script in ("build_stage", "run_stage", "runtime_packages", "check"):
             path = f"{SOURCE}/scripts/container/{script}"
