@@ -24,28 +24,27 @@ extern "C" void on_signal(int) {
 
 extern "C" void on_end_of_rows(int) { end_of_rows = true; }
 
-}  // namespace
-
-void catch_end_of_rows() {
+// SA_RESTART: a read or a write that the signal interrupts goes on afterwards.
+void install(int signal, void (*handler)(int)) {
   struct sigaction action {};
-  action.sa_handler = on_end_of_rows;
+  action.sa_handler = handler;
   sigemptyset(&action.sa_mask);
   action.sa_flags = SA_RESTART;
-  sigaction(SIGUSR1, &action, nullptr);
+  sigaction(signal, &action, nullptr);
 }
+
+}  // namespace
+
+void catch_end_of_rows() { install(SIGUSR1, on_end_of_rows); }
 
 bool rows_end() { return end_of_rows; }
 
 void catch_interrupts() {
-  struct sigaction action {};
-  action.sa_handler = on_signal;
-  sigemptyset(&action.sa_mask);
-  action.sa_flags = SA_RESTART;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+  install(SIGINT, on_signal);
+  install(SIGTERM, on_signal);
   // Ignored under nohup.
   struct sigaction hangup {};
-  if (sigaction(SIGHUP, nullptr, &hangup) == 0 && hangup.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
+  if (sigaction(SIGHUP, nullptr, &hangup) == 0 && hangup.sa_handler != SIG_IGN) install(SIGHUP, on_signal);
 }
 
 bool interrupted() { return signals.load() > 0 || stopped || scene::time_is_over(); }

@@ -27,7 +27,9 @@ scene::Light varied(const scene::Light& light, const scene::Scene& scene, Unifor
   if (const auto ball = scene::ball(light)) {
     const double reach = 0.2 * (ball->center - scene.camera.position).norm();
     for (int attempt = 0; attempt < 16; ++attempt) {
-      const Vec3 by = reach * Vec3(uniform.next(), uniform.next(), uniform.next());
+      // Compilers evaluate the arguments of a call in any order.
+      const double z = uniform.next(), y = uniform.next(), x = uniform.next();
+      const Vec3 by = reach * Vec3(x, y, z);
       const Ray way{ball->center, by.normalized()};
       if (!scene.geometry || !scene.geometry->occluded(way, by.norm() + 2 * ball->radius))
         return scene::moved(light, by);

@@ -76,7 +76,9 @@ double LightColumns::rounding_of(const Face& face, int axis) const {
     LocalLanes local;
     Lanes length;
     for (int lane = 0; lane < lanes; ++lane) {
-      Vec3 at(uniform(random), uniform(random), uniform(random));
+      // Compilers evaluate the arguments of a call in any order.
+      const double z = uniform(random), y = uniform(random), x = uniform(random);
+      Vec3 at(x, y, z);
       at[axis] = side_[axis];
       double most = infinity;  // back from the face, to where the box ends
       for (int b = 0; b < 3; ++b)

@@ -211,9 +211,9 @@ void check_others(bool slow) {
     for (const json& v : all) {
       kinds.insert(v["kind"]);
       if (is_slow(v["kind"]) != slow || !is_computed(name, v)) continue;
-      file["vectors"] = {v};
+      file["vectors"] = json::array({v});
       const Result right = verified(file);
-      file["vectors"] = {made_wrong(v)};
+      file["vectors"] = json::array({made_wrong(v)});
       const Result wrong = verified(file);
       CAPTURE(name, v["id"].get<std::string>(), right.text, wrong.text);
       CHECK(right.code == 0);
@@ -273,7 +273,7 @@ TEST_CASE("vectors whose sizes do not agree are refused with file and vector", "
     const json all = file["vectors"];
     const auto found = std::find_if(all.begin(), all.end(), [&](const json& v) { return v["id"] == fault.id; });
     REQUIRE(found != all.end());
-    file["vectors"] = {*found};
+    file["vectors"] = json::array({*found});
     if (file.contains("count")) file["count"] = 1;
     file["vectors"][0][json::json_pointer(fault.pointer)] = fault.value;
     CAPTURE(fault.id, fault.pointer);

@@ -44,7 +44,10 @@ std::vector<Point3> points(int count, double side = 1) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-side, side);
   std::vector<Point3> all;
-  for (int i = 0; i < count; ++i) all.emplace_back(uniform(random), uniform(random), uniform(random));
+  for (int i = 0; i < count; ++i) {
+    const double z = uniform(random), y = uniform(random), x = uniform(random);
+    all.emplace_back(x, y, z);
+  }
   return all;
 }
 
