@@ -22,6 +22,13 @@ std::string cpu_model() {
 
 }  // namespace
 
+std::string this_node() {
+  if (const char* name = std::getenv("SLURMD_NODENAME")) return name;
+  char host[256] = "";
+  gethostname(host, sizeof host - 1);
+  return host;
+}
+
 Machine this_machine() {
   Machine m;
   m.cpu = cpu_model();

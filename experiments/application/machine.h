@@ -15,6 +15,9 @@ struct Machine {
 };
 Machine this_machine();
 
+// The computer, as a cluster calls it; else its host name.
+std::string this_node();
+
 // Processor time that the living threads of this process have used since they began [s]; zeros if the
 // system does not say.
 struct ProcessorTime {

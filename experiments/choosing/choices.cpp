@@ -219,7 +219,7 @@ Outcome Choices::run(Experiment experiment, const RunOptions& options) const {
       if (!is_on(m, c)) continue;
       Row row = row_of(c, m, scene::Settings(question().settings(), m.settings, m.name), scene->hash);
       row.reference_key = key_of(candidates);
-      row.key = row_key(e, m, question(), row);
+      set_keys(e, m, question(), row);
       rows.push_back({row, [cases, &m](Row known, const scene::Execution& execution) {
                         cases->answer(options_of(m), execution, known);
                         return MadeRow{std::move(known), 0, {}};

@@ -10,10 +10,12 @@
 #include "experiments/application/say.h"
 #include "experiments/cli/command_line.h"
 #include "experiments/cli/commands.h"
+#include "experiments/cli/experiment_plan.h"
 #include "experiments/driver/agreement.h"
 #include "experiments/driver/committed_references.h"
 #include "experiments/driver/expected.h"
 #include "experiments/driver/junit.h"
+#include "experiments/driver/kind.h"
 #include "experiments/driver/margins.h"
 #include "experiments/driver/parts.h"
 #include "experiments/driver/plots.h"
@@ -35,7 +37,8 @@ struct ExperimentOptions {
   bool gates_only = false;         // experiments without gates are left out
   bool in_tests = false;           // experiments without in_tests = true are left out
   bool margins = false;            // how far each gate is from failing
-  std::string rows, journal;       // of a part: "I/N", and the folder of its rows and pictures
+  std::string rows, journal;       // of a part: "I/N" or "3,5-9", and the folder of its rows and pictures
+  bool without_times = false;      // its rows keep no time
   std::string gathered;            // an experiment
   std::vector<std::string> parts;  // folders of parts that are gathered
   bool fresh_references = false;   // first makes all committed references of these experiments anew
@@ -57,13 +60,29 @@ Folders folders_of(const ExperimentOptions& options) {
   return {project_root(options.root), options.journal.empty() ? options.results : options.journal, options.cache};
 }
 
-// "I/N", I from 1 to N. Throws Error for anything else.
+// "I/N", I from 1 to N, or row numbers "3,5-9". Throws Error for anything else.
 RowShare share_of(const std::string& text) {
+  const Error fault(fmt::format("--rows '{}': expected I/N with I from 1 to N, e.g. 2/8, or rows such as 3,5-9", text));
   RowShare share;
   int end = 0;
-  if (std::sscanf(text.c_str(), "%6d/%6d%n", &share.part, &share.parts, &end) != 2 || end != int(text.size()) ||
-      share.part < 1 || share.part > share.parts)
-    throw Error(fmt::format("--rows '{}': expected I/N with I from 1 to N, e.g. 2/8", text));
+  if (std::sscanf(text.c_str(), "%6d/%6d%n", &share.part, &share.parts, &end) == 2) {
+    if (end != int(text.size()) || share.part < 1 || share.part > share.parts) throw Error(fault);
+    return share;
+  }
+  const char* at = text.c_str();
+  do {
+    int first = 0, last = 0, length = 0;
+    if (std::sscanf(at, "%6d%n", &first, &length) != 1) throw Error(fault);
+    at += length;
+    last = first;
+    if (*at == '-') {
+      if (std::sscanf(at, "-%6d%n", &last, &length) != 1) throw Error(fault);
+      at += length;
+    }
+    if (first < 1 || last < first) throw Error(fault);
+    for (int number = first; number <= last; ++number) share.numbers.insert(number);
+  } while (*at++ == ',');
+  if (at[-1] != 0) throw Error(fault);
   return share;
 }
 
@@ -186,11 +205,11 @@ int list_experiments(const ExperimentOptions& options) {
   return 0;
 }
 
-// Every N-th row of one experiment, into a journal of its own that `gather` reads. Goes on with a journal that is there.
+// Some rows of one experiment, into a journal of its own that `gather` reads. Goes on with a journal that is there.
 int run_part(const ExperimentOptions& options) {
   check_profile(options);
   if (options.rows.empty() || options.journal.empty())
-    throw Error("--rows I/N and --journal FOLDER belong together: one of them is missing");
+    throw Error("--rows and --journal FOLDER belong together: one of them is missing");
   if (!options.results.empty() || options.fresh_references)
     throw Error("--rows: --results and --fresh-references are not for parts of an experiment");
   const RowShare share = share_of(options.rows);
@@ -200,10 +219,12 @@ int run_part(const ExperimentOptions& options) {
   std::vector<Experiment> experiments = read_and_check(options, folders, true);
   if (experiments.size() != 1)
     throw Error(fmt::format("--rows: expected one experiment, found {}", experiments.size()));
+  if (options.without_times && experiments.front().kind->times_rows()) experiments.front().timing.budget = 0;
   RunProgress progress(planned_work(experiments, folders.root / "results"));
   progress.begin(0);
   RunOptions run{folders, true, options.threads, true, true, &progress, false};
   run.share = share;
+  run.without_times = options.without_times && experiments.front().kind->times_rows();
   const Outcome outcome = run_experiment(std::move(experiments.front()), run);
   progress.end();
   fmt::print("  {} rows of part {}: {}\n", outcome.rows.size(), options.rows,
@@ -211,7 +232,7 @@ int run_part(const ExperimentOptions& options) {
   return 0;
 }
 
-// Tables of one experiment from parts that were computed anywhere with this program on processors of this kind.
+// Tables of one experiment from parts that were computed anywhere with this program.
 int gather(const ExperimentOptions& options) {
   check_profile(options);
   require(options.gathered, "NAME");
@@ -225,6 +246,7 @@ int gather(const ExperimentOptions& options) {
   RunOptions run{folders, true, options.threads, false, true};
   run.gather = true;
   const Outcome outcome = run_experiment(e, run);
+  if (!outcome.without_times.empty()) fmt::print("{}\n", outcome.without_times);
   fmt::print("{} rows of {} folders, {}: {}/table.md\n", outcome.rows.size(), options.parts.size(),
              gates_text(outcome.gates), shown(folders, results_name(e.id, e.profile)));
   return name_failures(outcome.gates);
@@ -406,12 +428,17 @@ void add_experiment(Commands& commands) {
   run->add_flag("--fresh-references", options->fresh_references,
                 "first compute the committed references of these experiments anew and replace their films in "
                 "experiments/data/references");
-  run->add_option("--rows", options->rows,
-                  "I/N: compute only part I of N, every N-th row of one experiment, for computers that share the work; "
-                  "SIGUSR1 ends it after the row in hand with exit code 130, and the same command goes on");
+  run->add_option(
+      "--rows", options->rows,
+      "compute only these rows of one experiment, for computers that share the work: I/N is part I of N, "
+      "every N-th row; 3,5-9 are rows by their number; SIGUSR1 ends it after the row in hand with exit code "
+      "130, and the same command goes on");
   run->add_option("--journal", options->journal, "folder of the rows and pictures of this part, for --rows")
       ->type_name("FOLDER");
+  run->add_flag("--without-times", options->without_times,
+                "with --rows: render each picture once and keep no times, since other work may disturb them");
   commands.on(run, [options] {
+    if (options->without_times && options->rows.empty()) throw Error("--without-times needs --rows");
     return options->rows.empty() && options->journal.empty() ? run_experiments(*options) : run_part(*options);
   });
   CLI::App* gathered =
@@ -429,6 +456,8 @@ void add_experiment(Commands& commands) {
     options->names = {options->gathered};
     return gather(*options);
   });
+  add_plan(commands, *experiment);
+  add_reference(commands, *experiment);
   CLI::App* plot = add_command(*experiment, "plot", "draw the plots of finished experiments again from their data");
   add_selection(plot, *options);
   add_results_folder(plot, *options);

@@ -284,7 +284,7 @@ Outcome Flows::run(Experiment experiment, const RunOptions& options) const {
       const Solve solve{solver, scene::Settings(solver.settings(), m.settings, m.name)};
       Row row = row_of(c, m, solve.settings, judged->problem->hash);
       row.reference_key = judged->reference_key;
-      row.key = row_key(e, m, solver, row);
+      set_keys(e, m, solver, row);
       rows.push_back({row, [&e, judged, solve](Row known, const scene::Execution& execution) {
                         return make_row(e, judged, solve, std::move(known), execution);
                       }});

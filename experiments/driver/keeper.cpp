@@ -51,6 +51,14 @@ std::unique_ptr<RunProgress> progress_of(const Experiment& e, const RunOptions& 
   return progress;
 }
 
+std::string processor() {
+  const Machine machine = this_machine();
+  return fmt::format("{}, {}, {} threads", machine.cpu, machine.simd, machine.threads);
+}
+
+// Where and with what a row is made.
+std::string computer() { return processor() + " on " + this_node(); }
+
 std::string title_of(const Row& row) {
   std::string title = row.setting.empty() ? row.method : row.method + " " + row.setting;
   return row.scene.empty() ? title : title + " on " + row.scene;
@@ -101,6 +109,7 @@ Outcome RowKeeper::run(const Plan& plan) {
   if (options_.gather && !failure && !missing_.empty())
     throw Error(fmt::format("{}: {} of {} rows are missing, the first is '{}'", name_, missing_.size(), planned_,
                             missing_.front()));
+  if (options_.gather) judge_times();
   outcome_.gates = judge(outcome_.experiment, outcome_.rows);
   if (!outcome_.rows.empty() && options_.tables) write();
   if (stopped) throw scene::Interrupted("interrupted");
@@ -130,8 +139,8 @@ RunProgress::Step RowKeeper::reference_step(const SceneCase& c) {
 // Rows that are finished are kept; the others are made in groups, and timed in turns.
 void RowKeeper::measure(std::vector<RowPlan> plans) {
   std::erase_if(plans, [&](const RowPlan&) {
-    const int number = planned_++;
-    return options_.share && number % options_.share->parts != options_.share->part - 1;
+    ++planned_;
+    return options_.share && !options_.share->has(planned_);
   });
   std::vector<std::optional<Row>> rows(plans.size());
   std::exception_ptr failure;
@@ -168,14 +177,46 @@ bool RowKeeper::has_picture(const Row& row) const {
   return row.image.empty() || fs::exists(images() / (row.image + ".exr"));
 }
 
+const Row* RowKeeper::finished(const Row& plan) const {
+  const Row* best = journal_.find(plan.key);
+  if (best || !options_.gather) return best;
+  for (const auto& [key, row] : journal_.rows())
+    if (row.figures_key == plan.figures_key && (!best || row.runs > best->runs)) best = &row;
+  return best;
+}
+
+// A table has the times of one computer, or none.
+void RowKeeper::judge_times() {
+  std::map<std::string, int> computers;
+  std::size_t untimed = 0;
+  for (const Row& row : outcome_.rows) {
+    if (row.runs > 0)
+      ++computers[row.made_on];
+    else
+      untimed += row.note.empty();
+  }
+  if (computers.size() == 1 && untimed == 0) {
+    const std::string& made_on = computers.begin()->first;
+    if (!made_on.starts_with(processor() + " on ")) outcome_.made_on = made_on.substr(0, made_on.rfind(" on "));
+    return;
+  }
+  if (!experiment().kind->times_rows()) return;  // what such rows say of time is a figure
+  std::vector<std::string> list;
+  for (const auto& [name, count] : computers) list.push_back(fmt::format("{} rows on {}", count, name));
+  if (untimed > 0) list.push_back(fmt::format("{} rows without times", untimed));
+  outcome_.without_times = fmt::format("Times are left out: {}", fmt::join(list, "; "));
+  for (Row& row : outcome_.rows) forget_times(row);
+  std::erase_if(outcome_.experiment.gates, [](const GateCase& gate) { return judges_time(gate.metric); });
+}
+
 void RowKeeper::make(RowPlan& plan, std::size_t place, std::vector<Held>& group,
                      std::vector<std::optional<Row>>& rows) {
   Row row = plan.row;
-  if (const Row* finished = journal_.find(row.key); finished && has_picture(*finished)) {
-    rows[place] = *finished;
+  if (const Row* kept = finished(row); kept && has_picture(*kept)) {
+    rows[place] = *kept;
     rows[place]->parameter = row.parameter;  // only where it is plotted
     progress_.spare(row_work());
-    say(*finished, "kept");
+    say(*kept, "kept");
     return;
   }
   if (options_.gather) {
@@ -241,7 +282,9 @@ void RowKeeper::time_group(std::vector<Held>& group, std::vector<std::optional<R
   group.clear();
 }
 
-void RowKeeper::finish(const Row& row, std::optional<Row>& place) {
+void RowKeeper::finish(Row row, std::optional<Row>& place) {
+  row.made_on = computer();
+  if (options_.without_times) forget_times(row);
   journal_.add(row);
   made_rows_ = true;
   place = row;

@@ -58,10 +58,13 @@ class RowKeeper {
   // The part of row_work before the timed runs.
   double making_work() const;
   bool has_picture(const Row&) const;
+  // The finished row of that plan, when gathering also one of another processor or without times.
+  const Row* finished(const Row& plan) const;
+  void judge_times();
   void measure(std::vector<RowPlan>);
   void make(RowPlan&, std::size_t place, std::vector<Held>&, std::vector<std::optional<Row>>&);
   void time_group(std::vector<Held>&, std::vector<std::optional<Row>>&);
-  void finish(const Row&, std::optional<Row>& place);
+  void finish(Row, std::optional<Row>& place);
   void say(const Row&, const char* how) const;
   void write() const;
 

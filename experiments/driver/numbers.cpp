@@ -82,7 +82,7 @@ Outcome Numbers::run(Experiment experiment, const RunOptions& options) const {
       const Probe& probe = find_probe(m.renderer, m.name);
       const scene::Settings settings(probe.settings(), m.settings, m.name);
       Row row = row_of(c, m, settings, key);
-      row.key = row_key(e, m, probe, row);
+      set_keys(e, m, probe, row);
       rows.push_back({row, [&probe, &keeper, input, settings](Row known, scene::Execution execution) {
                         execution.store = &keeper.store();
                         return make_row(probe, input, settings, std::move(known), execution);

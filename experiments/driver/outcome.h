@@ -48,6 +48,8 @@ struct Outcome {
   std::vector<ReferenceInfo> references;
   std::vector<GateResult> gates;
   bool complete = false;  // false: interrupted
+  // Gathered rows: the kind of processor that made all of them if it is not this one, and why no row has a time.
+  std::string made_on = {}, without_times = {};
   double seconds = 0;
 };
 

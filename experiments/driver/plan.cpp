@@ -18,12 +18,9 @@
 namespace airlight::experiments {
 namespace {
 
-// Times are those of a machine and a build; bits, too, may depend on libraries and on the widest instructions.
-std::string program_and_machine() {
+std::string program() {
   std::vector<std::string> parts{source_id(), compiler()};
   for (const auto& [name, number] : libraries()) parts.push_back(name + " " + number);
-  const Machine machine = this_machine();
-  parts.push_back(fmt::format("{}, {}, {} threads", machine.cpu, machine.simd, machine.threads));
   return content_key(parts);
 }
 
@@ -42,19 +39,9 @@ Row row_of(const SceneCase& c, const MethodCase& m, const scene::Settings& setti
   return row;
 }
 
-std::string row_key(const Experiment& e, const MethodCase& m, const scene::Component& component, const Row& row) {
-  const TimingRule& rule = e.timing;
-  std::vector<std::string> parts{program_and_machine(),
-                                 row.scene_hash,
-                                 row.scene,
-                                 row.method,
-                                 row.setting,
-                                 row.renderer,
-                                 row.settings,
-                                 row.layer,
-                                 row.reference_key,
-                                 e.layer,
-                                 fmt::format("{} {} {} {}", rule.runs, rule.least_seconds, rule.budget, rule.threads)};
+void set_keys(const Experiment& e, const MethodCase& m, const scene::Component& component, Row& row) {
+  std::vector<std::string> parts{program(),    row.scene_hash, row.scene, row.method,        row.setting,
+                                 row.renderer, row.settings,   row.layer, row.reference_key, e.layer};
   parts.insert(parts.end(), e.metrics.begin(), e.metrics.end());
   parts.push_back(fmt::format("{} {} {}", m.picture_only, m.count_noise, m.moving ? canonical(*m.moving) : ""));
   if (m.anew) parts.push_back("anew");
@@ -63,7 +50,12 @@ std::string row_key(const Experiment& e, const MethodCase& m, const scene::Compo
   const std::string device = component.device();
   parts.push_back(device);
   if (!device.empty()) parts.push_back(gpu::foreign_shaders());
-  return content_key(parts);
+  row.figures_key = content_key(parts);
+  // Times are those of a machine; bits, too, may depend on the widest instructions.
+  const Machine machine = this_machine();
+  const TimingRule& rule = e.timing;
+  row.key = content_key({row.figures_key, fmt::format("{}, {}, {} threads", machine.cpu, machine.simd, machine.threads),
+                         fmt::format("{} {} {} {}", rule.runs, rule.least_seconds, rule.budget, rule.threads)});
 }
 
 namespace {
@@ -154,7 +146,7 @@ PlannedScene plan_scene(const Experiment& e, const SceneCase& c, std::shared_ptr
     p.row.width = scene.width;
     p.row.height = scene.height;
     p.row.reference_key = reference;
-    p.row.key = row_key(e, m, renderer, p.row);
+    set_keys(e, m, renderer, p.row);
     planned.rows.push_back(std::move(p));
   }
   return planned;

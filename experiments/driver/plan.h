@@ -44,8 +44,8 @@ PlannedScene plan_scene(const Experiment&, const SceneCase&, std::shared_ptr<con
 // A row as the file describes it, with the content hash of its scene.
 Row row_of(const SceneCase&, const MethodCase&, const scene::Settings&, const std::string& scene_hash);
 
-// Key of a row whose names, settings and hashes are known.
-std::string row_key(const Experiment&, const MethodCase&, const scene::Component&, const Row&);
+// Keys of a row whose names, settings and hashes are known.
+void set_keys(const Experiment&, const MethodCase&, const scene::Component&, Row&);
 
 // Pixels of the view whose ray sees more than 1e-3 of the media, from the media themselves.
 std::vector<unsigned char> foreground_of(const scene::Scene&, const scene::View&);

@@ -59,8 +59,9 @@ json rows(const Outcome& outcome) {
   json list = json::array();
   for (const Row& row : outcome.rows) {
     list.push_back(to_json(row));
-    list.back().erase("times");                                             // what they show is in the intervals
-    for (const char* drawn : {"map", "columns"}) list.back().erase(drawn);  // with their numbers beside the plot
+    list.back().erase("times");  // what they show is in the intervals
+    for (const char* drawn : {"map", "columns", "figures_key", "made_on"})
+      list.back().erase(drawn);  // with their numbers beside the plot
   }
   return list;
 }
@@ -92,6 +93,9 @@ json run_record(const Outcome& outcome, const std::vector<NamedTable>& tables, c
               {"system", machine.system},
               {"load_average_at_end", machine.load_average},
               {"load_warning", load_warning(outcome)}}}};
+  if (!outcome.made_on.empty())
+    j["machine"] = {{"cpu", outcome.made_on}, {"threads", e.timing.threads}, {"load_warning", load_warning(outcome)}};
+  if (!outcome.without_times.empty()) j["without_times"] = outcome.without_times;
   if (!e.summary.empty()) j["summary"] = summary_text(outcome);
   j["libraries"] = json::object();
   for (const auto& [name, number] : libraries()) j["libraries"][name] = number;

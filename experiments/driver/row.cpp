@@ -41,6 +41,7 @@ json to_json(const Row& row) {
   json stages = json::array();
   for (const auto& [name, seconds] : row.stages) stages.push_back({{"stage", name}, {"seconds", seconds}});
   json j = {{"key", row.key},
+            {"figures_key", row.figures_key},
             {"scene", row.scene},
             {"method", row.method},
             {"setting", row.setting},
@@ -71,7 +72,18 @@ json to_json(const Row& row) {
   if (!row.left_out.empty()) j["left_out"] = row.left_out;
   if (row.map) j["map"] = to_json(*row.map);
   if (!row.columns.empty()) j["columns"] = row.columns;
+  if (!row.made_on.empty()) j["made_on"] = row.made_on;
   return j;
+}
+
+void forget_times(Row& row) {
+  row.runs = 0;
+  row.seconds = {0, 0, 0};
+  row.coverage = row.mad = row.waited = row.prepare_seconds = 0;
+  row.times.clear();
+  row.group.clear();
+  row.moved.clear();
+  row.stages.clear();
 }
 
 bool is_processor(const std::string& device) { return device.find("no GPU") != std::string::npos; }
@@ -80,6 +92,7 @@ Row row_from_json(const json& j) {
   Row row;
   const auto text = [&](const char* name, std::string& out) { j.at(name).get_to(out); };
   text("key", row.key);
+  row.figures_key = j.value("figures_key", "");
   text("scene", row.scene);
   text("method", row.method);
   text("setting", row.setting);
@@ -112,6 +125,7 @@ Row row_from_json(const json& j) {
   if (j.contains("moved"))
     for (const auto& [what, after] : j.at("moved").items()) row.moved[what] = {after.at("seconds"), after.at("anew")};
   row.left_out = j.value("left_out", "");
+  row.made_on = j.value("made_on", "");
   if (j.contains("map")) row.map = map_from_json(j.at("map"));
   if (j.contains("columns"))
     for (const auto& [name, values] : j.at("columns").items())

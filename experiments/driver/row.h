@@ -14,7 +14,8 @@
 namespace airlight::experiments {
 
 struct Row {
-  std::string key;  // content of everything that the row depends on
+  std::string key;          // content of everything that the row depends on
+  std::string figures_key;  // content of everything that its figures depend on: without processor and rule of timing
   std::string scene, method, setting, renderer, settings, layer;
   std::string scene_hash, reference_key;
   std::optional<double> parameter;
@@ -39,7 +40,11 @@ struct Row {
   std::optional<FigureMap> map;
   Columns columns;
   double exposure = 0;
+  std::string made_on;  // computer and processor; kept by journals alone
 };
+
+// Takes away all that the row says of times.
+void forget_times(Row&);
 
 // The stage of a device's row that its time of one render leaves out: layers of the film on their way to the host.
 inline constexpr const char* download_stage = "download";

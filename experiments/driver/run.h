@@ -2,6 +2,7 @@
 #pragma once
 #include <filesystem>
 #include <optional>
+#include <set>
 
 #include "experiments/application/folders.h"
 #include "experiments/driver/outcome.h"
@@ -10,9 +11,12 @@ namespace airlight::experiments {
 
 class RunProgress;
 
-// Part `part` of `parts`, counted from 1: every parts-th row in the order of the table, and no tables.
+// Some rows of the table, numbered from 1 in its order, and no tables: every parts-th from `part` on, or those listed.
 struct RowShare {
   int part = 1, parts = 1;
+  std::set<int> numbers = {};  // empty: every parts-th
+
+  bool has(int number) const { return numbers.empty() ? number % parts == part % parts : numbers.contains(number); }
 };
 
 struct RunOptions {
@@ -25,7 +29,10 @@ struct RunOptions {
   bool tables = true;               // false: only gates are wanted, so no tables, plots and record are written
   bool trials = true;               // check_experiment renders small pictures; false: it loads and plans alone
   std::optional<RowShare> share = {};
-  bool gather = false;  // every row must be finished: throws Error that says how many are missing, and writes nothing
+  bool without_times = false;  // rows of this run keep no time: other work may disturb it
+  // Every row must be finished, on a processor of any kind: throws Error that says how many are missing, and writes
+  // nothing. Times are kept if they all come from one computer.
+  bool gather = false;
 };
 
 // Checks before anything is written whether the experiment can be computed as its file says. Simulates

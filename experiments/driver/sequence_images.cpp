@@ -184,15 +184,17 @@ MadeRow make_row(const RowKeeper& keeper, const Judged& judged, std::size_t meth
 
 // The row of the last picture, known by all of them.
 Row row_of_sequence(const Judged& judged, std::size_t method) {
-  std::vector<std::string> keys, scenes, references;
+  std::vector<std::string> keys, figures_keys, scenes, references;
   for (const PlannedScene& planned : judged.planned) {
     const Row& one = planned.rows[method].row;
     keys.push_back(one.key);
+    figures_keys.push_back(one.figures_key);
     scenes.push_back(one.scene_hash);
     references.push_back(one.reference_key);
   }
   Row row = judged.planned.back().rows[method].row;
   row.key = content_key(keys);
+  row.figures_key = content_key(figures_keys);
   row.scene_hash = content_key(scenes);
   row.reference_key = content_key(references);
   row.exposure = judged.exposure;

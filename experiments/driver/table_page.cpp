@@ -67,6 +67,7 @@ std::string conditions(const Experiment& e, const json& record) {
   std::string out = "## Conditions\n\n";
   if (const std::string warning = machine.value("load_warning", ""); !warning.empty())
     out += fmt::format("- **{}.**\n", warning);
+  if (record.contains("without_times")) out += fmt::format("- **{}.**\n", record["without_times"].get<std::string>());
   for (const json& r : record.at("references")) {
     const auto text = [&](const char* key) { return r.at(key).get<std::string>(); };
     const std::string samples = text("samples"), film = r.value("committed", "");  // old records name no film

@@ -61,6 +61,7 @@ TEST_CASE("parts that contradict each other, that are of another program, or no 
   row.measures.at(0).value *= 1.001;
   experiments::Journal(project.path() / "wrong/rows/g/e.quick.jsonl", false).add(row);
   row.key[0] = row.key[0] == '0' ? '1' : '0';  // as another program has it
+  row.figures_key = row.key;
   experiments::Journal(project.path() / "other/rows/g/e.quick.jsonl", false).add(row);
   const auto refused = [&](const std::string& command, const std::string& words) {
     const Result result = run("experiment " + command, project);
@@ -75,10 +76,43 @@ TEST_CASE("parts that contradict each other, that are of another program, or no 
   refused(gather + "other", "5 of 5 rows are missing");
   refused(gather + "nowhere", "nowhere: no rows of g/e");
   refused(gather, "FOLDER is missing");
-  for (const char* rows : {"0/2", "3/2", "1", "1/2x", "a/b", "1/0"})
+  for (const char* rows : {"0/2", "3/2", "1/2x", "a/b", "1/0", "0", "3-2", "1,,2", "2,", "1-", "2x"})
     refused("run g/e --root . --journal p --rows " + std::string(rows), "expected I/N with I from 1 to N");
   refused("run g/e --root . --rows 1/2", "belong together");
   refused("run g/e --root . --journal p", "belong together");
+}
+
+TEST_CASE("rows of several computers give errors without times", "[cli]") {
+  const SmallProject project(box_of_fog(12, 9), marcher({2, 4, 8, 16, 32}));
+  REQUIRE(run("experiment run g/e --root . --results whole", project).code == 0);
+  REQUIRE(run("experiment run g/e --root . --rows 1-2,5 --journal p1", project).code == 0);
+  REQUIRE(run("experiment run g/e --root . --rows 3,4 --journal p2", project).code == 0);
+  // Another processor: its rows have other keys.
+  const experiments::Journal journal(project.path() / "p2/rows/g/e.quick.jsonl", true);
+  REQUIRE(journal.rows().size() == 2);
+  experiments::Journal other(project.path() / "far/rows/g/e.quick.jsonl", false);
+  for (auto [key, row] : journal.rows()) {
+    row.key[0] = row.key[0] == '0' ? '1' : '0';
+    row.made_on = "Another, avx2, 64 threads on n7";
+    other.add(row);
+  }
+  std::filesystem::copy(project.path() / "p2/images", project.path() / "far/images",
+                        std::filesystem::copy_options::recursive);
+  const Result mixed = run("experiment gather g/e --root . --results mixed p1 far", project);
+  CAPTURE(mixed.out, mixed.err);
+  REQUIRE(mixed.code == 0);
+  CHECK_THAT(mixed.out, Contains("Times are left out: ") && Contains("2 rows on Another, avx2, 64 threads on n7"));
+  CHECK(figures(project, "mixed") == figures(project, "whole"));
+  const std::string page = read_bytes(project.file("mixed/g/e/table.md"));
+  CHECK_THAT(page, Contains("Times are left out"));
+  CHECK_THAT(page, !Contains("| time"));
+
+  REQUIRE(run("experiment run g/e --root . --rows 1/1 --journal untimed --without-times", project).code == 0);
+  const Result untimed = run("experiment gather g/e --root . --results untimed-table untimed", project);
+  CAPTURE(untimed.out, untimed.err);
+  REQUIRE(untimed.code == 0);
+  CHECK_THAT(untimed.out, Contains("Times are left out: 5 rows without times"));
+  CHECK(figures(project, "untimed-table") == figures(project, "whole"));
 }
 
 TEST_CASE("SIGUSR1 ends a part after the row in hand, and the part goes on", "[cli]") {
