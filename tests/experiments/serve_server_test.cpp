@@ -90,9 +90,14 @@ TEST_CASE("Serve: ten thousand mutated requests get an answer of one line or a p
   json reference = scene;
   reference.update({{"width", 8}, {"height", 8}, {"orders", "all"}, {"known", -1}});
   const std::vector<std::pair<std::string, std::string>> seeds{
-      {"/api/frame", frame.dump()},         {"/api/scene", scene.dump()},
-      {"/api/text", scene.dump()},          {"/api/reference", reference.dump()},
-      {"/api/leave", "{\"client\":\"c\"}"}, {"/api/scenes", "{\"client\":\"c\"}"}};
+      {"/api/frame", frame.dump()},
+      {"/api/scene", scene.dump()},
+      {"/api/text", scene.dump()},
+      {"/api/reference", reference.dump()},
+      {"/api/leave", "{\"client\":\"d\"}"},  // what "c" asks for after it left would be dropped
+      {"/api/scenes", "{\"client\":\"c\"}"},
+      {"/api/flow", R"({"client":"c","known":3,"order":"play","pace":0.5})"},
+      {"/api/stir", R"({"client":"c","from":[0,0,0],"to":[0,1,0.5],"radius":0.2,"speed":1})"}};
   const std::string pieces = "{}[]\",:0123456789eE+-.\\ntruefalsu\x01\xff ";
   std::mt19937 random(7);
   std::map<int, int> statuses;

@@ -43,6 +43,14 @@ export function moved() {
   stage.draw();
 }
 
+// The first picture says which exposure is good. Smoke of a flow comes little by little, and makes pictures brighter.
+function expose(picture) {
+  const now = state.view.exposure;
+  if (now !== null && (!page.flows || page.exposed)) return;
+  const good = goodExposure(picture);
+  if (now === null || good < now) setExposure(good);
+}
+
 // One question of a pane is on its way at a time; a coarse one stops a whole one.
 async function askFrame(side) {
   const job = work[side], pane = state.panes[side];
@@ -64,7 +72,7 @@ async function askFrame(side) {
       Object.assign(job, {head, failed: ""});
       stage.pictures[side] = picture;
       stage.notes[side] = head.refused ? `cannot render this: ${head.refused}` : "";
-      if (picture && state.view.exposure === null) setExposure(goodExposure(picture));
+      if (picture) expose(picture);
       stage.draw();
       const all = (received - sent) / 1000 - head.seconds - head.waited;
       job.latency = picture && {all: (performance.now() - input) / 1000, render: head.seconds, queue: head.waited, transport: all,

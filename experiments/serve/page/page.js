@@ -25,7 +25,10 @@ async function openScene(number, given) {
     return say(error.message);
   }
   stage.aspect = aspect();
-  if (!given.view) state.view.exposure = null;
+  if (!given.view) {
+    state.view.exposure = null;
+    page.exposed = false;
+  }
   const can = page.scene.methods.filter(m => !m.refused).map(m => m.name);
   const own = can.filter(name => ["fogshop", "shadow_planes", "wavelet_fog", "legendre_fluids", "compensated_ray_marching"].includes(name));
   const usual = {left: own[0] || can[0], right: ["froxel_fog", "ray_marcher"].find(name => can.includes(name)) || can[can.length - 1]};
@@ -48,7 +51,10 @@ async function begin() {
   if (!films.includes(state.film)) state.film = 320;
   if (given.view) {
     take(state.view, given.view, ["mode", "a", "b", "showA", "gain", "relative", "tone", "colours", "layer", "wipe"]);
-    if (typeof given.view.exposure === "number") state.view.exposure = given.view.exposure;
+    if (typeof given.view.exposure === "number") {
+      state.view.exposure = given.view.exposure;
+      page.exposed = true;
+    }
   }
   buildView();
   $("scene").addEventListener("input", () => openScene(+$("scene").value, {}));
@@ -68,6 +74,7 @@ async function begin() {
     return say(error.message);
   }
   page.files = about.scenes;
+  page.flows = Boolean(about.flow);
   watch(() => { if (page.scene) moved(); });
   fill($("scene"), page.files.map((f, i) => ({value: i, text: f.split("/").pop().replace(/\.toml$/, "")})), 0);
   const file = page.files.indexOf(given.file);

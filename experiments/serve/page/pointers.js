@@ -108,6 +108,7 @@ export function onKey(event) {
   else if (key === " ") setMode("flip");
   else if (key === "+" || key === "=" || key === "-") {
     v.exposure = Math.max(-10, Math.min(10, (v.exposure ?? 0) + (key === "-" ? -0.25 : 0.25)));
+    page.exposed = true;
     showView();
   } else if (key === "[" || key === "]") {
     v.wipe = Math.max(0, Math.min(1, v.wipe + (key === "[" ? -0.02 : 0.02)));

@@ -43,7 +43,7 @@ function reportOf(side) {
   const open = document.querySelector(`.report[data-side="${side}"] details`);
   box.append(element("details", {open: Boolean(open && open.open)}, element("summary", {textContent: "stages"}),
     table(head.times.map(t => [t.name, milliseconds(t.seconds)])),
-    table(head.stages.map(s => [s.kept ? "computes" : "leaves out", s.name, s.reason, s.kept ? "" : "left-out"])),
+    table(head.stages.map(s => [s.kept ? s.name : `${s.name} (left out)`, "", s.reason, s.kept ? "" : "left-out"])),
     table(Object.entries(head.counters).map(([name, value]) => [name, short(value)]))));
   return box;
 }

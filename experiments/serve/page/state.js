@@ -13,8 +13,9 @@ export const state = {
          layer: "mean", wipe: 0.5},
 };
 
-// The server's description of the scene, of the file as it is; names of all scene files.
-export const page = {scene: null, files: []};
+// The server's description of the scene, of the file as it is; names of all scene files; does a flow give the smoke, and did somebody choose
+// the exposure?
+export const page = {scene: null, files: [], flows: false, exposed: false};
 export const work = Object.fromEntries(sides.map(s => [s, {number: 0, busy: false, still: false, again: false, head: null, latency: null}]));
 export const reference = {known: -1, head: null, asking: false};
 export const stage = new Stage($("canvas"), state);

@@ -3,7 +3,7 @@ import {remember} from "./address.js";
 import {$, element, fill} from "./controls.js";
 import {moved} from "./frames.js";
 import {tones} from "./pictures.js";
-import {films, layers, sources, stage, state} from "./state.js";
+import {films, layers, page, sources, stage, state} from "./state.js";
 import {modes} from "./stage.js";
 
 // null until the first picture says which one is good.
@@ -52,7 +52,7 @@ export function buildView() {
   fill($("b"), sources.map(s => ({value: s, text: s})), state.view.b);
   fill($("film"), films.map(f => ({value: f, text: `${f} wide`})), state.film);
   const on = (id, act) => $(id).addEventListener("input", () => { act($(id)); showView(); remember(); });
-  on("exposure", e => { state.view.exposure = +e.value; });
+  on("exposure", e => { state.view.exposure = +e.value; page.exposed = true; });
   on("gain", e => { state.view.gain = +e.value; });
   on("tone", e => { state.view.tone = e.value; });
   on("colours", e => { state.view.colours = e.checked; });
