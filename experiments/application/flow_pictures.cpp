@@ -6,6 +6,7 @@
 #include "gpu/legendre_fluids/light.h"
 #include "scene/base/error.h"
 #include "scene/base/stopwatch.h"
+#include "scene/finish_copy.h"
 #include "scene/math/legendre.h"
 #include "scene/media/legendre_box.h"
 #include "scene/scene.h"
@@ -16,21 +17,31 @@ namespace {
 const std::string drawn_there = gpu::legendre_fluids::LegendreLight().name();
 const auto is_smoke = [](const scene::Medium& m) { return scene::extinguishes(m); };
 
+void require_smoke(const scene::Scene& scene) {
+  if (std::none_of(scene.media.begin(), scene.media.end(), is_smoke))
+    throw Error(scene.name + ": has no medium that extinguishes, expected one that is to be the flow's");
+}
+
 }  // namespace
+
+std::shared_ptr<const scene::Scene> scene_with_smoke(const scene::Scene& scene, const scene::DensityField& field) {
+  require_smoke(scene);
+  const auto changed = std::make_shared<scene::Scene>(scene);
+  std::find_if(changed->media.begin(), changed->media.end(), is_smoke)->field = field;
+  scene::finish_copy(*changed);
+  return changed;
+}
 
 FlowPictures::FlowPictures(const scene::Scene& scene, const scene::Renderer& renderer, const scene::Settings& settings,
                            double exposure, int threads)
     : scene_(scene), renderer_(renderer), settings_(settings), exposure_(exposure) {
   execution_.threads = threads;
   execution_.layers = {"mean"};
-  if (std::none_of(scene.media.begin(), scene.media.end(), is_smoke))
-    throw Error(scene.name + ": has no medium that extinguishes, expected one that is to be the flow's");
+  require_smoke(scene);
 }
 
 std::unique_ptr<scene::Prepared> FlowPictures::prepared_with(const scene::DensityField& field) const {
-  const auto scene = std::make_shared<scene::Scene>(scene_);
-  std::find_if(scene->media.begin(), scene->media.end(), is_smoke)->field = field;
-  return renderer_.prepare(scene, settings_, execution_);
+  return renderer_.prepare(scene_with_smoke(scene_, field), settings_, execution_);
 }
 
 void FlowPictures::draw(const scene::Flow& flow, const std::string& png) {

@@ -9,6 +9,9 @@
 
 namespace airlight::experiments {
 
+// The scene with this density in its first medium that extinguishes. Throws Error where it has none.
+std::shared_ptr<const scene::Scene> scene_with_smoke(const scene::Scene&, const scene::DensityField&);
+
 class FlowPictures {
  public:
   // Keeps scene, renderer and settings by reference. Throws Error where no medium of the scene extinguishes.

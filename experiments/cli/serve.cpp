@@ -19,6 +19,7 @@ struct ServeOptions {
   std::vector<std::string> scenes;
   std::string root;
   serve::ServerOptions server;
+  serve::FlowChoice flow;
   bool open = false;
   int threads = 0;
 };
@@ -47,9 +48,21 @@ int serve_scenes(const ServeOptions& options) {
   const std::vector<std::string> files = options.scenes.empty() ? common_scenes(options.root) : options.scenes;
   serve::ServerOptions where = options.server;
   if (!serve::is_loopback(where.host) && where.token.empty()) where.token = serve::random_token();
-  serve::Studio studio(files, options.threads);
+  const bool flows = !options.flow.file.empty();
+  const serve::FlowChoice usual;
+  if (!flows &&
+      (options.flow.method != usual.method || !options.flow.settings.empty() || !options.flow.overrides.empty()))
+    throw Error("--method, --set and --override belong to a flow: name one with --flow");
+  if (flows && options.scenes.empty())
+    throw Error("--flow needs a scene that shows it: name a SCENE whose smoke is to be the flow's");
+  serve::Studio studio(files, options.threads, flows ? std::optional(options.flow) : std::nullopt);
   if (!options.scenes.empty())
-    for (int i = 0; i < studio.scenes(); ++i) studio.source(i);  // throws for a file that is no scene
+    for (int i = 0; i < studio.scenes();
+         ++i) {  // throws for a file that is no scene, or that has no smoke for the flow
+      serve::SceneRequest request;
+      request.scene = i;
+      studio.scene(request);
+    }
   serve::Server server(studio, where);
   const std::string host = where.host.find(':') == std::string::npos ? where.host : "[" + where.host + "]";
   const std::string address =
@@ -70,6 +83,11 @@ void add_serve(Commands& commands) {
   const auto options = std::make_shared<ServeOptions>();
   CLI::App* c = add_command(commands.app, "serve", "compare two methods and the reference side by side in a browser");
   c->add_option("SCENE", options->scenes, "scene files (default: those of experiments/scenes/common)");
+  c->add_option("--flow", options->flow.file,
+                "simulate this flow file while you watch; the first medium of every SCENE shows its smoke");
+  c->add_option("--method,-m", options->flow.method, "solver of --flow: stable_fluids (default) or legendre_fluids");
+  add_pairs(c, "--set", options->flow.settings, "change a setting of the solver of --flow");
+  add_pairs(c, "--override", options->flow.overrides, "change a value of the flow file");
   c->add_option("--port", options->server.port, "port to listen on, 0 for any that is free (default 7007)")
       ->check(CLI::Range(0, 65535));
   c->add_option("--host", options->server.host,

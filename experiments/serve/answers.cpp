@@ -146,13 +146,23 @@ std::string picture_bytes(const std::string& json_text, const scene::Film& film,
   return bytes;
 }
 
-std::string list_of_scenes(const Studio& studio) {
+std::string list_of_scenes(Studio& studio) {
   json j{{"scenes", json::array()}};
   for (const std::string& file : studio.files()) j["scenes"].push_back(scene::printable(file));
+  if (studio.has_flow()) {
+    const LiveFlow& flow = studio.flow();
+    const scene::FlowProblem& problem = flow.problem();
+    j["flow"] = {{"name", scene::printable(problem.name)},
+                 {"method", flow.choice().method},
+                 {"lo", list(problem.box.lo)},
+                 {"hi", list(problem.box.hi)},
+                 {"duration", problem.duration},
+                 {"dt", flow.dt()}};
+  }
   return text_of(j);
 }
 
-std::string scene_answer(const SceneSource& source, const scene::Scene& scene) {
+std::string scene_answer(const SceneSource& source, const scene::Scene& scene, bool flows) {
   const scene::Camera& camera = scene.camera;
   json j{{"name", scene::printable(scene.name)},
          {"file", scene::printable(source.file())},
@@ -170,7 +180,7 @@ std::string scene_answer(const SceneSource& source, const scene::Scene& scene) {
   for (const scene::Light& light : scene.lights) j["lights"].push_back(light_json(light));
   for (std::size_t i = 0; i < scene.media.size(); ++i) {
     j["media"].push_back(medium_json(scene.media, i));
-    if (const auto frames = source.frames(i))
+    if (const auto frames = source.frames(i); frames && !flows)
       j["media"].back()["frames"] = {frames->first, frames->second, source.frame(i)};
   }
   for (const auto& renderer : all_renderers()) {
@@ -196,6 +206,7 @@ std::string frame_answer(const std::optional<Frame>& frame, const FrameRequest& 
   j["width"] = frame->film->width;
   j["height"] = frame->film->height;
   j["scale"] = scale;
+  if (frame->smoke_time) j["smoke_time"] = *frame->smoke_time;
   j["waited"] = frame->waited;
   j["seconds"] = frame->seconds;
   j["prepared"] = frame->prepared;
@@ -233,6 +244,14 @@ std::string reference_answer(const ReferenceState& state) {
   j["height"] = state.film->height;
   j["scale"] = scale;
   return picture_bytes(text_of(j), *state.film, "mean", scale);
+}
+
+std::string flow_answer(const FlowState& state) {
+  json j{{"number", state.number},   {"steps", state.steps}, {"time", state.time},
+         {"playing", state.playing}, {"pace", state.pace},   {"step_seconds", state.step_seconds},
+         {"strokes", state.strokes}};
+  if (!state.message.empty()) j["message"] = scene::printable(state.message);
+  return text_of(j);
 }
 
 }  // namespace airlight::experiments::serve

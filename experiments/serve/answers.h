@@ -12,12 +12,13 @@ std::string picture_bytes(const std::string& json, const scene::Film&, const std
 // The power of two that brings the greatest finite value of a layer to [2^14, 2^15).
 double scale_of(const scene::Film&, const std::string& layer);
 
-// The files, by name.
-std::string list_of_scenes(const Studio&);
-// The camera, lights and media of a scene, and what can render it: settings, or the reason why not.
-std::string scene_answer(const SceneSource&, const scene::Scene&);
+// The files, by name, and the flow, if there is one.
+std::string list_of_scenes(Studio&);
+// The camera, lights and media of a scene, and what can render it: settings, or the reason why not. `flows`: a flow gives the smoke.
+std::string scene_answer(const SceneSource&, const scene::Scene&, bool flows = false);
 // With its picture, if there is one.
 std::string frame_answer(const std::optional<Frame>&, const FrameRequest&);
 std::string reference_answer(const ReferenceState&);
+std::string flow_answer(const FlowState&);
 
 }  // namespace airlight::experiments::serve

@@ -2,6 +2,7 @@
 #pragma once
 #include <deque>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,12 +16,13 @@ struct Frame {
   std::string refused;  // why the method cannot render this; empty: there is a film
   std::shared_ptr<const scene::Scene> scene;
   std::shared_ptr<const scene::Film> film;
-  bool noisy = false;     // the film's noise is a part of its error
-  std::string prepared;   // "kept", "moved on" (Prepared::next) or "anew"
-  double waited = 0;      // [s] in the queue
-  double seconds = 0;     // of what was redone and of the rendering, wall clock
-  double median = 0;      // of the last frames, at most 30, whose preparation and film were like this one
-  int median_frames = 0;  // how many
+  std::optional<double> smoke_time;  // of the flow that it shows [s]; nothing without a flow
+  bool noisy = false;                // the film's noise is a part of its error
+  std::string prepared;              // "kept", "moved on" (Prepared::next) or "anew"
+  double waited = 0;                 // [s] in the queue
+  double seconds = 0;                // of what was redone and of the rendering, wall clock
+  double median = 0;                 // of the last frames, at most 30, whose preparation and film were like this one
+  int median_frames = 0;             // how many
   std::vector<scene::StageTime> times;
   std::vector<scene::Stage> stages;
   std::map<std::string, double> counters;

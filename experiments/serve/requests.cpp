@@ -66,6 +66,25 @@ class Fields {
     throw BadRequest(
         fmt::format("request: {} = {}, expected an integer from {} to {}", key, shown(value), least, greatest));
   }
+  double number(const std::string& key, double least, double greatest) {
+    const json& value = at(key);
+    if (value.is_number())
+      if (const double number = value.get<double>(); number >= least && number <= greatest) return number;
+    throw BadRequest(
+        fmt::format("request: {} = {}, expected a number from {:g} to {:g}", key, shown(value), least, greatest));
+  }
+  Point3 point(const std::string& key) {
+    const json& value = at(key);
+    Point3 point;
+    bool good = value.is_array() && value.size() == 3;
+    for (int i = 0; good && i < 3; ++i) {
+      good = value[std::size_t(i)].is_number();
+      if (good) point[i] = value[std::size_t(i)].get<double>();
+    }
+    if (!good || !point.allFinite())
+      throw BadRequest(fmt::format("request: {} = {}, expected three numbers", key, shown(value)));
+    return point;
+  }
   // An object of few values.
   const json& table(const std::string& key) {
     const json& value = at(key);
@@ -184,11 +203,38 @@ ReferenceRequest read_reference_request(const std::string& body, int scenes) {
   return request;
 }
 
-std::string read_leave_request(const std::string& body) {
+std::string read_client(const std::string& body) {
   Fields fields(body);
   const std::string client = fields.word("client", "-_", 40);
   fields.done();
   return client;
+}
+
+FlowRequest read_flow_request(const std::string& body) {
+  static const std::vector<std::string> orders{"play", "pause", "step", "reset", "replay"};  // as FlowOrder
+  Fields fields(body);
+  FlowRequest request;
+  fields.word("client", "-_", 40);
+  request.known = fields.integer("known", -1, 1LL << 50);
+  if (fields.has("order")) {
+    const std::string order = fields.one_of("order", orders);
+    request.order = FlowOrder(std::find(orders.begin(), orders.end(), order) - orders.begin());
+  }
+  if (fields.has("pace")) request.pace = fields.number("pace", 0, 1e6);
+  fields.done();
+  return request;
+}
+
+Stroke read_stroke(const std::string& body) {
+  Fields fields(body);
+  Stroke stroke;
+  fields.word("client", "-_", 40);
+  stroke.from = fields.point("from");
+  stroke.to = fields.point("to");
+  stroke.radius = fields.number("radius", 0, 1e9);
+  stroke.speed = fields.number("speed", 0, 1e6);
+  fields.done();
+  return stroke;
 }
 
 }  // namespace airlight::experiments::serve

@@ -1,8 +1,10 @@
 // What a browser asks for: JSON, checked strictly. Every function throws BadRequest, one line, for anything that is not as it must be.
 #pragma once
 #include <map>
+#include <optional>
 #include <string>
 
+#include "experiments/serve/live_flow.h"
 #include "scene/base/error.h"
 #include "scene/scene.h"
 
@@ -36,9 +38,17 @@ struct ReferenceRequest : SceneRequest {
   long long known = -1;    // number of the picture that the browser has; it gets no other until there is one
 };
 
+struct FlowRequest {
+  long long known = -1;  // number of the smoke that the browser has; the answer waits a while for another one
+  std::optional<FlowOrder> order = {};
+  std::optional<double> pace = {};
+};
+
 SceneRequest read_scene_request(const std::string& body, int scenes);
 FrameRequest read_frame_request(const std::string& body, int scenes);
 ReferenceRequest read_reference_request(const std::string& body, int scenes);
-std::string read_leave_request(const std::string& body);  // the client
+std::string read_client(const std::string& body);  // a request that names a client and nothing else
+FlowRequest read_flow_request(const std::string& body);
+Stroke read_stroke(const std::string& body);
 
 }  // namespace airlight::experiments::serve

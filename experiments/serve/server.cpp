@@ -18,7 +18,9 @@ using httplib::Request;
 using httplib::Response;
 
 constexpr std::size_t most_body = 1 << 16;
-constexpr int most_connections = 64;
+constexpr int most_connections = 160;  // of 64 clients, one each all the time
+constexpr auto heartbeat = std::chrono::milliseconds(200);
+constexpr auto longest_wait = std::chrono::milliseconds(500);  // for smoke
 
 // "127.0.0.1:7007", "[::1]:7007", "localhost": the part that names the machine.
 std::string machine_of(const std::string& host) {
@@ -79,14 +81,39 @@ struct Server::Hidden {
   // A question of the page: JSON in, something out.
   template <class Answer>
   void question(const std::string& path, const char* type, const Answer& answer) {
-    http.Post(path, [this, type, answer](const Request& request, Response& response) {
+    request_to(path, [type, answer](const std::string& body, Response& response) {
+      response.set_content(answer(body), type);
+    });
+  }
+
+  // An answer without end, of a space every 200 ms, by which both sides see that the other one is there. Writing fails where a browser was
+  // killed; then nothing runs for it any more.
+  void add_watch() {
+    request_to("/api/watch", [this](const std::string& body, Response& response) {
+      const std::string client = read_client(body);
+      studio.enter(client);
+      response.set_chunked_content_provider(
+          "text/plain",
+          [this](std::size_t, httplib::DataSink& sink) {
+            if (studio.stopped() || !sink.is_writable() || !sink.write(" ", 1)) return false;
+            std::this_thread::sleep_for(heartbeat);
+            return true;
+          },
+          [this, client](bool) { studio.exit(client); });
+    });
+  }
+
+  // Calls act(body, response) for good requests, and answers the others in one line.
+  template <class Act>
+  void request_to(const std::string& path, const Act& act) {
+    http.Post(path, [this, act](const Request& request, Response& response) {
       if (const std::string line = objection(request); !line.empty()) return say_no(response, 403, line);
       if (!options.token.empty() && !is_same_secret(request.get_header_value("X-Airlight-Token"), options.token))
         return say_no(response, 403, "the token is missing or wrong: open the address that `airlight serve` printed");
       if (request.get_header_value("Content-Type") != "application/json")
         return say_no(response, 400, "expected a body of type application/json");
       try {
-        response.set_content(answer(request.body), type);
+        act(request.body, response);
       } catch (const Error& error) {
         say_no(response, 400, error.what());
       } catch (const std::bad_alloc&) {
@@ -115,12 +142,12 @@ struct Server::Hidden {
     const char* json = "application/json";
     const char* bytes = "application/octet-stream";
     question("/api/scenes", json, [this](const std::string& body) {
-      read_leave_request(body);  // the client's name, as everywhere
+      read_client(body);
       return list_of_scenes(studio);
     });
     question("/api/scene", json, [this](const std::string& body) {
       const SceneRequest request = read_scene_request(body, studio.scenes());
-      return scene_answer(studio.source(request.scene), *studio.scene(request));
+      return scene_answer(studio.source(request.scene), *studio.scene(request), studio.has_flow());
     });
     question("/api/text", "text/plain; charset=utf-8", [this](const std::string& body) {
       const SceneRequest request = read_scene_request(body, studio.scenes());
@@ -134,8 +161,22 @@ struct Server::Hidden {
       return reference_answer(studio.reference(read_reference_request(body, studio.scenes())));
     });
     question("/api/leave", json, [this](const std::string& body) {
-      studio.leave(read_leave_request(body));
+      studio.leave(read_client(body));
       return std::string("{}");
+    });
+    question("/api/flow", json, [this](const std::string& body) {
+      const FlowRequest request = read_flow_request(body);
+      LiveFlow& flow = studio.flow();
+      if (request.pace) flow.set_pace(*request.pace);
+      if (request.order) flow.order(*request.order);
+      return flow_answer(flow.state(request.known, longest_wait));
+    });
+    question("/api/stir", json, [this](const std::string& body) {
+      studio.flow().stir(read_stroke(body));
+      return std::string("{}");
+    });
+    question("/api/script", "text/plain; charset=utf-8", [this](const std::string& body) {
+      return studio.flow().script(studio.files()[std::size_t(read_scene_request(body, studio.scenes()).scene)]);
     });
   }
 
@@ -171,6 +212,7 @@ Server::Server(Studio& studio, const ServerOptions& options) : hidden_(std::make
   });
   hidden_->add_page();
   hidden_->add_questions();
+  hidden_->add_watch();
   if (options.port == 0)
     hidden_->port = http.bind_to_any_port(options.host.c_str());
   else if (http.bind_to_port(options.host.c_str(), options.port))

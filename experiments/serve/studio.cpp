@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <exception>
 
+#include "experiments/application/flow_pictures.h"
 #include "experiments/application/interrupt.h"
 #include "scene/base/error.h"
 
@@ -19,7 +20,7 @@ constexpr auto long_silence = std::chrono::seconds(30);  // after which frames s
 
 struct Studio::Job {
   FrameRequest request;
-  std::shared_ptr<const scene::Scene> scene;
+  View view;
   Clock::time_point asked = Clock::now();
   std::atomic<bool> stop{false};
   std::atomic<double> fraction{0};
@@ -33,6 +34,8 @@ struct Studio::Job {
 struct Studio::Client {
   Clock::time_point seen = Clock::now();
   bool watches = false;                 // it has asked for a reference, as pages do all the time
+  int entered = 0;                      // how many times it watches
+  bool moves = false;                   // its last frame shows something else than its reference
   std::map<std::string, Frame> frames;  // the last of each pane
 
   std::shared_ptr<const scene::Scene> scene;  // of the reference that it wants; null: none
@@ -45,8 +48,11 @@ struct Studio::Client {
   std::map<std::string, std::pair<std::shared_ptr<const scene::Film>, long long>> judged;
 };
 
-Studio::Studio(std::vector<std::string> files, int threads)
-    : files_(std::move(files)), threads_(threads), thread_([this] { work(); }) {}
+Studio::Studio(std::vector<std::string> files, int threads, const std::optional<FlowChoice>& flow)
+    : files_(std::move(files)),
+      threads_(threads),
+      flow_(flow ? std::make_unique<LiveFlow>(*flow, threads) : nullptr),
+      thread_([this] { work(); }) {}
 
 Studio::~Studio() {
   stop();
@@ -71,10 +77,23 @@ const SceneSource& Studio::source(int scene) {
   return *source;
 }
 
-std::shared_ptr<const scene::Scene> Studio::scene(const SceneRequest& request) {
-  const SceneSource& from = source(request.scene);
+LiveFlow& Studio::flow() {
+  if (!flow_) throw Error("there is no flow here: start the server with --flow FLOW.toml");
+  return *flow_;
+}
+
+Studio::View Studio::view(const SceneRequest& request) {
   std::string key = std::to_string(request.scene);
   for (const auto& [path, text] : request.values) key += "\n" + path + "=" + text;
+  const auto scene = kept(key, [&] { return source(request.scene).with(request.values); });
+  if (!flow_) return {scene, {}};
+  const auto smoke = flow_->smoke();
+  key += fmt::format("\nsmoke {}", smoke->number);
+  return {kept(key, [&] { return scene_with_smoke(*scene, smoke->density); }), smoke->time};
+}
+
+std::shared_ptr<const scene::Scene> Studio::kept(const std::string& key,
+                                                 const std::function<std::shared_ptr<const scene::Scene>()>& make) {
   {
     const std::lock_guard lock(sources_mutex_);
     for (auto at = scenes_.begin(); at != scenes_.end(); ++at)
@@ -83,7 +102,7 @@ std::shared_ptr<const scene::Scene> Studio::scene(const SceneRequest& request) {
         return at->second;
       }
   }
-  const auto scene = from.with(request.values);
+  const auto scene = make();
   const std::lock_guard lock(sources_mutex_);
   scenes_.emplace_front(key, scene);
   if (scenes_.size() > most_scenes) scenes_.pop_back();
@@ -109,10 +128,11 @@ Studio::Client& Studio::client(const std::string& name) {
 std::optional<Frame> Studio::frame(const FrameRequest& request) {
   const auto job = std::make_shared<Job>();
   job->request = request;
-  job->scene = scene(request);
+  job->view = view(request);
   std::unique_lock lock(mutex_);
-  if (stopping_) return std::nullopt;
-  client(request.client);
+  if (stopping_ || has_left(request.client)) return std::nullopt;
+  Client& asking = client(request.client);
+  asking.moves = asking.scene && asking.scene->hash != job->view.scene->hash;
   if (running_ && running_->is_of(request)) running_->stop = true;
   const auto older = std::find_if(queue_.begin(), queue_.end(), [&](const auto& j) { return j->is_of(request); });
   if (older != queue_.end()) {
@@ -134,8 +154,14 @@ std::optional<Frame> Studio::frame(const FrameRequest& request) {
 ReferenceState Studio::reference(const ReferenceRequest& request) {
   const auto wanted = scene(request);
   std::unique_lock lock(mutex_);
+  if (has_left(request.client)) {
+    ReferenceState nothing;
+    nothing.missing = "the page has left";
+    return nothing;
+  }
   Client& asking = client(request.client);
   asking.watches = true;
+  asking.moves = false;
   if (!asking.scene || asking.scene->hash != wanted->hash || asking.width != request.width ||
       asking.height != request.height || asking.all_orders != request.all_orders) {
     asking.scene = wanted;
@@ -178,11 +204,37 @@ ReferenceState Studio::reference(const ReferenceRequest& request) {
   return state;
 }
 
-void Studio::leave(const std::string& name) {
+void Studio::enter(const std::string& name) {
   const std::lock_guard lock(mutex_);
+  std::erase(gone_, name);
+  ++client(name).entered;
+  if (flow_) flow_->watched(true);
+}
+
+void Studio::exit(const std::string& name) {
+  const std::lock_guard lock(mutex_);
+  const auto of = clients_.find(name);
+  if (of == clients_.end() || of->second->entered == 0 || --of->second->entered > 0) return;
+  let_go(name);
+}
+
+// Under the mutex.
+void Studio::let_go(const std::string& name) {
   forget(name);
+  gone_.push_back(name);
+  if (gone_.size() > 4 * most_clients) gone_.pop_front();
   wake_.notify_all();
   done_.notify_all();
+}
+
+// Under the mutex.
+bool Studio::has_left(const std::string& name) const {
+  return std::find(gone_.begin(), gone_.end(), name) != gone_.end();
+}
+
+void Studio::leave(const std::string& name) {
+  const std::lock_guard lock(mutex_);
+  let_go(name);
 }
 
 // Under the mutex.
@@ -196,6 +248,8 @@ void Studio::forget(const std::string& name) {
   if (clients_.erase(name) == 0) return;
   left_.push_back(name);
   yield_ = true;
+  if (flow_)
+    flow_->watched(std::any_of(clients_.begin(), clients_.end(), [](const auto& c) { return c.second->entered > 0; }));
 }
 
 bool Studio::is_silent(const Client& client) const { return client.watches && Clock::now() - client.seen > silence; }
@@ -205,7 +259,7 @@ std::string Studio::next_reference() const {
   std::string name;
   Clock::time_point longest = Clock::time_point::max();
   for (const auto& [of, client] : clients_)
-    if (client->scene && client->state.growing && !is_silent(*client) && client->grown < longest) {
+    if (client->scene && client->state.growing && !client->moves && !is_silent(*client) && client->grown < longest) {
       name = of;
       longest = client->grown;
     }
@@ -287,8 +341,9 @@ Pane& Studio::pane(const Job& job) {
 void Studio::render(Job& job) {
   const double waited = std::chrono::duration<double>(Clock::now() - job.asked).count();
   try {
-    job.frame = pane(job).render(job.request, job.scene, execution(job.stop, &job.fraction));
+    job.frame = pane(job).render(job.request, job.view.scene, execution(job.stop, &job.fraction));
     job.frame->waited = waited;
+    job.frame->smoke_time = job.view.smoke_time;
   } catch (const scene::Interrupted&) {
   } catch (...) {
     job.error = std::current_exception();

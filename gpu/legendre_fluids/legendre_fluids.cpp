@@ -30,6 +30,9 @@ class LegendreFlowGpu final : public LegendreFlow {
       : LegendreFlow(std::move(problem), std::move(fluid), cells, mixing),
         device_(to_device(*fluid_, {source_, push_})) {}
 
+  void add(const scene::Push& push) override {
+    scene::Flow::add(push);
+  }  // shaders have room for the problem's forces alone
   std::map<std::string, double> counters() const override {
     auto counters = LegendreFlow::counters();
     for (const auto& [name, value] : device_->counters()) counters[name] = value;
@@ -98,7 +101,7 @@ class LegendreFlowGpu final : public LegendreFlow {
                                                             : 0);
     }
     for (std::size_t i = 0; i < push_seconds.size(); ++i)
-      f.pushes.push_back(push_seconds[i] * p_->pushes[i].acceleration.cwiseQuotient(box_.half));
+      f.pushes.push_back(push_seconds[i] * pushes_[i].acceleration.cwiseQuotient(box_.half));
     return f;
   }
 

@@ -27,9 +27,19 @@ void LegendreFlow::begin() {
         space.scalar_from_function([&](const Vec3& x) { return scene::start_temperature(*p_, box_.outside(x)); });
   for (std::size_t i = 0; i < p_->sources.size(); ++i)
     source_.push_back(region_coefficients(*p_, space, box_, p_->sources[i].region, fmt::format("source {}", i)));
-  for (std::size_t i = 0; i < p_->pushes.size(); ++i)
-    push_.push_back(region_coefficients(*p_, space, box_, p_->pushes[i].region, fmt::format("force {}", i)));
+  for (const scene::Push& push : p_->pushes) begin_push(push);
   LegendreFlow::settle();
+}
+
+void LegendreFlow::begin_push(const scene::Push& push) {
+  push_.push_back(
+      region_coefficients(*p_, fluid_->space(), box_, push.region, fmt::format("force {}", pushes_.size())));
+  pushes_.push_back(push);
+}
+
+void LegendreFlow::add(const scene::Push& push) {
+  if (p_->velocity_stays) return scene::Flow::add(push);
+  begin_push(push);
 }
 
 void LegendreFlow::begin_densities() {
@@ -127,7 +137,7 @@ std::vector<double> LegendreFlow::source_seconds(const Interval& time) const {
 
 std::vector<double> LegendreFlow::push_seconds(const Interval& time) const {
   std::vector<double> seconds;
-  for (const scene::Push& force : p_->pushes) {
+  for (const scene::Push& force : pushes_) {
     const Interval part = intersect(force.time, time);
     // The integral of cos(2 pi f t) over the part of it.
     const double w = 2 * pi * force.frequency;
@@ -162,7 +172,7 @@ void LegendreFlow::push(const Interval& time) {
     if (fluid_->temperature.size())
       change[a] -= dt * p_->gravity[a] * p_->expansion / box_.half[a] * fluid_->temperature;
     for (std::size_t i = 0; i < push_.size(); ++i)
-      if (seconds[i] != 0) change[a] += seconds[i] * p_->pushes[i].acceleration[a] / box_.half[a] * push_[i];
+      if (seconds[i] != 0) change[a] += seconds[i] * pushes_[i].acceleration[a] / box_.half[a] * push_[i];
     any |= !change[a].isZero(0);
   }
   if (any) fluid_->push(change);

@@ -25,6 +25,7 @@ class LegendreFlow : public scene::Flow {
 
   double time() const override { return time_; }
   void step(double dt) override;
+  void add(const scene::Push&) override;
   Vec3 velocity(const Point3& x) const override;
   std::vector<Vec3> velocities(const std::vector<Point3>&) const override;
   double density(const Point3& x) const override { return carried_at(smoke(0), x); }
@@ -67,12 +68,14 @@ class LegendreFlow : public scene::Flow {
   ReferenceBox box_;
   std::unique_ptr<Fluid> fluid_;
   Cells cells_;
-  std::vector<Array> source_, push_;  // coefficients of their regions
+  std::vector<scene::Push> pushes_;   // the problem's, and those that were added
+  std::vector<Array> source_, push_;  // coefficients of the regions of sources and forces
   Mixing mixing_;
 
  private:
   void begin();
   void begin_densities();
+  void begin_push(const scene::Push&);
   const Array& smoke(int which) const;
   void fade(double seconds);
   void add_sources(const Interval& time);

@@ -38,8 +38,8 @@ void add_buoyancy(double weight, double expansion, const Vec3& gravity, const La
 }
 
 template <class Real>
-void add_pushes(const scene::FlowProblem& problem, const Lattice& l, double time, double dt, Velocity<Real>& u) {
-  for (const scene::Push& push : problem.pushes) {
+void add_pushes(const std::vector<scene::Push>& pushes, const Lattice& l, double time, double dt, Velocity<Real>& u) {
+  for (const scene::Push& push : pushes) {
     const Interval part = intersect(push.time, {time, time + dt});
     if (part.empty()) continue;
     // The integral of cos(2 pi f t) over the part of the step.
@@ -151,7 +151,7 @@ void hold_velocities(const scene::FlowProblem& problem, const Lattice& l, double
 #define AIRLIGHT_OF(Real)                                                                                         \
   template void add_buoyancy(double, double, const Vec3&, const Lattice&, const Field<Real>&, const Field<Real>&, \
                              double, Velocity<Real>&);                                                            \
-  template void add_pushes(const scene::FlowProblem&, const Lattice&, double, double, Velocity<Real>&);           \
+  template void add_pushes(const std::vector<scene::Push>&, const Lattice&, double, double, Velocity<Real>&);     \
   template void add_confinement(double, const Lattice&, const Obstacles&, double, Velocity<Real>&);               \
   template std::array<Real, 3> vorticity(const Velocity<Real>&, const Lattice&, int, int, int);                   \
   template void add_sources(const scene::FlowProblem&, const Lattice&, double, double, Quantity, Field<Real>&);   \

@@ -12,7 +12,7 @@ void add_buoyancy(double weight, double expansion, const Vec3& gravity, const La
 
 // Accelerations in time, at their mean over the step.
 template <class Real>
-void add_pushes(const scene::FlowProblem&, const Lattice&, double time, double dt, Velocity<Real>&);
+void add_pushes(const std::vector<scene::Push>&, const Lattice&, double time, double dt, Velocity<Real>&);
 
 // epsilon h (N x w), N = grad|w| / |grad|w|| and 0 where that is: Steinhoff and Underhill 1994; Fedkiw et al. 2001, Eq.
 // 9 to 11. Ghosts of the velocity are filled before. Vorticity is that at cell centres.

@@ -51,6 +51,7 @@ class GridFlow : public scene::Flow {
  public:
   GridFlow(std::shared_ptr<const scene::FlowProblem> problem, const Plan& plan)
       : problem_(std::move(problem)),
+        pushes_(problem_->pushes),
         plan_(plan),
         l_(checked(make_lattice(*problem_, plan.longest))),
         obstacles_(make_obstacles(*problem_, l_)),
@@ -70,6 +71,11 @@ class GridFlow : public scene::Flow {
     last_step_ = dt;
     time_ = since_ + double(++equal_steps_) * dt;
     ++steps_;
+  }
+
+  void add(const scene::Push& push) override {
+    if (problem_->velocity_stays) return scene::Flow::add(push);
+    pushes_.push_back(push);
   }
 
   Vec3 velocity(const Point3& x) const override {
@@ -231,7 +237,8 @@ class GridFlow : public scene::Flow {
     const Field<Real>* temperature = problem_->expansion != 0 ? find(Quantity::temperature) : nullptr;
     const auto acts_along = [&](int axis) {
       bool any = (density || temperature) && problem_->gravity[axis] != 0;
-      for (const scene::Push& push : problem_->pushes) any |= push.acceleration[axis] != 0;
+      for (const scene::Push& push : pushes_)
+        any |= push.acceleration[axis] != 0 && !intersect(push.time, {time_, time_ + dt}).empty();
       return any;
     };
     Velocity<Real>& change = advected_;  // not used before the advection
@@ -240,7 +247,7 @@ class GridFlow : public scene::Flow {
     if (density || temperature)
       add_buoyancy(density ? problem_->weight : 0, temperature ? problem_->expansion : 0, problem_->gravity, l_,
                    density ? *density : *temperature, temperature ? *temperature : *density, dt, change);
-    add_pushes(*problem_, l_, time_, dt, change);
+    add_pushes(pushes_, l_, time_, dt, change);
     for (int a = 0; a < l_.dimensions; ++a)
       if (acts_along(a)) balance_->add(change[a], u_[a]);
     add_confinement(problem_->confinement, l_, obstacles_, dt, u_);
@@ -292,6 +299,7 @@ class GridFlow : public scene::Flow {
   }
 
   std::shared_ptr<const scene::FlowProblem> problem_;
+  std::vector<scene::Push> pushes_;  // the problem's, and those that were added
   Plan plan_;
   Lattice l_;
   Obstacles obstacles_;

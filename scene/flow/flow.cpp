@@ -5,6 +5,8 @@
 
 namespace airlight::scene {
 
+void Flow::add(const Push&) { throw Error("this flow takes no further forces"); }
+
 std::vector<Vec3> Flow::velocities(const std::vector<Point3>& points) const {
   std::vector<Vec3> u;
   for (const Point3& x : points) u.push_back(velocity(x));

@@ -51,6 +51,9 @@ class Flow {
   virtual double time() const = 0;  // [s]
   // By dt > 0 [s]. Throws Unstable (step and cell).
   virtual void step(double dt) = 0;
+  // A further force, which acts as though the problem had it from the start, if its time begins now or later. Throws Error where the flow
+  // takes none, and for a region that is too small to be seen.
+  virtual void add(const Push&);
   // At points of the box; outside it at the nearest one.
   virtual Vec3 velocity(const Point3&) const = 0;                          // [m/s]
   virtual std::vector<Vec3> velocities(const std::vector<Point3>&) const;  // of many points: one by one by default

@@ -1,14 +1,10 @@
 #!/usr/bin/env python3
-"""serve_test.py [PROGRAM]: the page of `airlight serve` in a headless Chromium: pictures, dragging, settings, refusals, keys, widths.
-
-With AIRLIGHT_SCREENSHOTS it writes what it sees into that folder."""
+"""serve_test.py [PROGRAM]: the page of `airlight serve` in a headless Chromium: pictures, dragging, settings, refusals, keys, widths,
+running simulations."""
 import array
-import base64
-import json
 import os
 import shlex
 import shutil
-import signal
 import subprocess
 import sys
 import tempfile
@@ -17,109 +13,13 @@ import unittest
 import zlib
 
 SOURCE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+sys.dont_write_bytecode = True
+sys.path.insert(0, f"{SOURCE}/scripts/browser")
+from chromium import AT_REST, BROWSER, Browser, Server  # noqa: E402
+
 PROGRAM = os.path.abspath(sys.argv.pop(1)) if len(sys.argv) > 1 and not sys.argv[1].startswith("-") else f"{SOURCE}/build/release/airlight"
 SCENES = [f"experiments/scenes/common/{name}.toml" for name in ("lamp_in_patches", "lamp_and_boxes")]
-BROWSER = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-
-
-class Browser:
-    """A page of a browser that is driven through a pair of pipes: JSON with a zero byte behind each message."""
-
-    def __init__(self, folder):
-        to_browser, self.to_browser = os.pipe()
-        self.from_browser, from_browser = os.pipe()
-
-        def before():  # the browser reads from 3 and writes to 4
-            os.dup2(to_browser, 100)
-            os.dup2(from_browser, 101)
-            os.dup2(100, 3)
-            os.dup2(101, 4)
-
-        self.process = subprocess.Popen(
-            [BROWSER, "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run",
-             "--disable-background-networking", "--remote-debugging-pipe", f"--user-data-dir={folder}/profile", "about:blank"],
-            preexec_fn=before, close_fds=False, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        os.close(to_browser)
-        os.close(from_browser)
-        self.buffer, self.number, self.session = b"", 0, None
-        self.complaints, self.requests = [], []
-        target = self.call("Target.createTarget", url="about:blank")["targetId"]
-        self.session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
-        for domain in ("Page", "Runtime", "Log", "Network"):
-            self.call(f"{domain}.enable")
-
-    def message(self):
-        while b"\0" not in self.buffer:
-            piece = os.read(self.from_browser, 1 << 20)
-            assert piece, "the browser ended"
-            self.buffer += piece
-        text, self.buffer = self.buffer.split(b"\0", 1)
-        return json.loads(text)
-
-    def call(self, method, **parameters):
-        self.number += 1
-        asked = {"id": self.number, "method": method, "params": parameters}
-        if self.session:
-            asked["sessionId"] = self.session
-        os.write(self.to_browser, json.dumps(asked).encode() + b"\0")
-        while True:
-            answer = self.message()
-            if answer.get("id") == self.number:
-                assert "error" not in answer, (method, answer)
-                return answer["result"]
-            self.note(answer)
-
-    def note(self, event):
-        method, about = event.get("method", ""), event.get("params", {})
-        if method == "Network.requestWillBeSent":
-            self.requests.append(about["request"]["url"])
-        elif method == "Runtime.exceptionThrown":
-            self.complaints.append(json.dumps(about)[:600])
-        elif method == "Runtime.consoleAPICalled" and about["type"] in ("error", "warning", "assert"):
-            self.complaints.append(json.dumps(about["args"])[:600])
-        elif method == "Log.entryAdded" and about["entry"]["level"] in ("error", "warning") and \
-                "getImageData" not in about["entry"]["text"]:  # which these tests call, not the page
-            self.complaints.append(json.dumps(about["entry"])[:600])
-
-    def run(self, script):
-        result = self.call("Runtime.evaluate", expression=script, awaitPromise=True, returnByValue=True)
-        assert "exceptionDetails" not in result, result
-        return result["result"].get("value")
-
-    def wait(self, condition, seconds=120):
-        end = time.time() + seconds
-        while not self.run(f"Boolean({condition})"):
-            assert time.time() < end, f"{condition}; {self.run('document.body.innerText')[:800]}; {self.complaints}"
-            time.sleep(0.05)
-
-    def size(self, width, height, touch=False):
-        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=touch)
-
-    def mouse(self, kind, x, y, button="left", **more):
-        self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button=button, clickCount=1, **more)
-
-    def drag(self, start, end, steps=6, button="left"):
-        self.mouse("mouseMoved", *start, button="none")
-        self.mouse("mousePressed", *start, button=button)
-        for i in range(1, steps + 1):
-            self.mouse("mouseMoved", *[a + (b - a) * i / steps for a, b in zip(start, end)], button=button)
-            time.sleep(0.03)
-        self.mouse("mouseReleased", *end, button=button)
-
-    def key(self, key, text=""):
-        self.call("Input.dispatchKeyEvent", type="keyDown", key=key, text=text)
-        self.call("Input.dispatchKeyEvent", type="keyUp", key=key)
-
-    def picture_of_page(self, name):
-        if folder := os.environ.get("AIRLIGHT_SCREENSHOTS"):
-            with open(f"{folder}/{name}.png", "wb") as file:
-                file.write(base64.b64decode(self.call("Page.captureScreenshot")["data"]))
-
-    def close(self):
-        self.process.terminate()
-        self.process.wait(20)
-        os.close(self.to_browser)
-        os.close(self.from_browser)
+FLOW = ["experiments/scenes/common/plume_sun.toml", "--flow", "experiments/flows/plume.toml", "--set", "n=20"]
 
 
 def bytes_of_png(path):
@@ -146,26 +46,24 @@ def bytes_of_png(path):
     return result
 
 
-AT_REST = ("window.airlight && ['left', 'right'].every(s => { const w = airlight.work[s]; return !w.busy && !w.again && w.still && "
-           "(w.failed || w.head && (w.head.refused || airlight.stage.pictures[s].width === airlight.state.film)); })")
+class Page(unittest.TestCase):
+    """A server and a browser for all tests of a class."""
+    words = None
 
-
-class Serve(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
+        if cls.words is None:
+            raise unittest.SkipTest("no tests of its own")
         cls.folder = tempfile.mkdtemp()
-        cls.server = subprocess.Popen([PROGRAM, "serve", *SCENES, "--port", "0"], cwd=SOURCE, stdout=subprocess.PIPE, text=True)
-        cls.address = cls.server.stdout.readline().strip()
-        cls.browser = Browser(cls.folder)
-        cls.browser.size(1280, 900)
+        cls.server = Server(PROGRAM, cls.words)
+        cls.address = cls.server.address
+        cls.browser = Browser()
 
     @classmethod
     def tearDownClass(cls):
         cls.browser.close()
-        cls.server.send_signal(signal.SIGINT)
-        code = cls.server.wait(20)
+        cls.server.close()
         shutil.rmtree(cls.folder, ignore_errors=True)
-        assert code == 0, code
 
     def setUp(self):
         self.browser.complaints.clear()
@@ -183,8 +81,7 @@ class Serve(unittest.TestCase):
         self.browser.wait(AT_REST)
 
     def rest(self):
-        time.sleep(0.3)  # longer than the page waits until it takes something for resting
-        self.browser.wait(AT_REST)
+        self.browser.rest()
 
     def picture(self, side):
         return self.browser.run(f"Array.from(airlight.stage.pictures.{side}.values)")
@@ -208,11 +105,14 @@ class Serve(unittest.TestCase):
         self.assertLess(max(abs(a - b) for a, b in zip(found, expected)) / scale, 1e-3)
 
     def middle(self):
-        return self.browser.run("(() => { const b = document.getElementById('canvas').getBoundingClientRect(); "
-                                "return [b.x + 0.25 * b.width, b.y + 0.7 * b.height]; })()")
+        return self.browser.on_canvas(0.25, 0.7)
 
     def focus(self):
         self.browser.run("document.getElementById('canvas').focus()")
+
+
+class Compare(Page):
+    words = SCENES
 
     def test_both_panes_show_what_render_writes(self):
         for side in ("left", "right"):
@@ -220,7 +120,6 @@ class Serve(unittest.TestCase):
             expected = self.rendered(["render", SCENES[0], "--method", method, "--override", "film.width=320", "--override", "film.height=240"])
             self.assert_alike(self.picture(side), expected)
         self.browser.wait("document.querySelector('.report .error').textContent.match(/error (below noise, at most )?[0-9.e+-]+ %/)", 200)
-        self.browser.picture_of_page("wipe_1280")
 
     def test_the_copied_command_gives_the_picture_after_a_drag(self):
         before = self.picture("left")
@@ -236,7 +135,6 @@ class Serve(unittest.TestCase):
         words = shlex.split(command)
         self.assertEqual(words[0], "airlight")
         self.assert_alike(after, self.rendered(words[1:words.index("--out")]))
-        self.browser.picture_of_page("dragged")
 
     def test_coarse_frames_while_it_moves(self):
         x, y = self.middle()
@@ -250,17 +148,13 @@ class Serve(unittest.TestCase):
         self.assertGreater(latency["render"], 0)
 
     def test_a_light_is_dragged_by_its_handle(self):
-        place = self.browser.run(
-            "import('./camera.js').then(c => { const s = airlight.stage, p = c.project(s.camera, s.aspect, s.handles[0].position); "
-            "const r = s.panels()[0].rect, b = s.canvas.getBoundingClientRect(); "
-            "return [b.x + (r.x + p.u * r.width) * b.width / s.canvas.width, b.y + (r.y + p.v * r.height) * b.height / s.canvas.height]; })")
+        place = self.browser.light_handle()
         before = self.picture("right")
         self.browser.drag(place, (place[0] + 70, place[1] + 20))
         self.rest()
         self.assertIn("light.0.position", self.browser.run("Object.keys(airlight.state.values)"))
         self.assertNotIn("camera.position", self.browser.run("Object.keys(airlight.state.values)"))
         self.assertNotEqual(before, self.picture("right"))
-        self.browser.picture_of_page("light")
 
     def test_a_setting_changes_the_frame_and_can_be_refused(self):
         before = self.picture("left")
@@ -289,7 +183,6 @@ class Serve(unittest.TestCase):
                          "m.value = 'ray_marcher'; m.dispatchEvent(new Event('input')); })()")
         self.rest()
         self.assertGreater(self.browser.run(brightest), 0)
-        self.browser.picture_of_page("difference")
 
     def test_keys(self):
         self.focus()
@@ -307,7 +200,6 @@ class Serve(unittest.TestCase):
         self.browser.key("2", "2")
         self.assertEqual(self.browser.run("airlight.state.view.mode"), "side by side")
         self.rest()
-        self.browser.picture_of_page("side_by_side")
         self.browser.key(" ", " ")
         self.browser.key(" ", " ")
         self.assertEqual(self.browser.run("[airlight.state.view.mode, airlight.state.view.showA]"), ["flip", False])
@@ -326,7 +218,6 @@ class Serve(unittest.TestCase):
         self.open(link)
         self.assertEqual(left, self.picture("left"))
         self.assertEqual(self.browser.run("airlight.state.scene"), 1)
-        self.browser.picture_of_page("boxes")
 
     def test_texts_read_back(self):
         self.focus()
@@ -372,7 +263,6 @@ class Serve(unittest.TestCase):
         try:
             self.open()
             self.assertLessEqual(self.browser.run("document.documentElement.scrollWidth"), 390)
-            self.browser.picture_of_page("wipe_390")
             before = self.browser.run("airlight.stage.camera.position")
             x, y = self.middle()
             self.browser.call("Emulation.setTouchEmulationEnabled", enabled=True)
@@ -392,8 +282,86 @@ class Serve(unittest.TestCase):
             self.browser.size(1280, 900)
 
 
+class Simulate(Page):
+    words = FLOW
+
+    def setUp(self):
+        self.browser.complaints.clear()
+        self.browser.requests.clear()
+        self.browser.call("Page.navigate", url="about:blank")
+        self.browser.call("Page.navigate", url=self.address)
+        self.browser.wait("window.airlight && airlight.flow.now && airlight.stage.pictures.left")
+        self.browser.run("airlight.flow.now.playing || document.getElementById('flow-play').click()")
+        self.browser.wait("airlight.flow.now.playing")
+
+    def pause(self):
+        self.browser.click("#flow-play")
+        self.browser.wait("!airlight.flow.now.playing")
+        self.rest()
+
+    def test_play_moves_time_and_pause_stops_it(self):
+        time_now = "airlight.flow.now.time"
+        before = self.browser.run(time_now)
+        self.browser.wait(f"{time_now} > {before} + 0.2")
+        self.pause()
+        stopped, picture = self.browser.run(time_now), self.picture("left")
+        time.sleep(0.7)
+        self.assertEqual(self.browser.run(time_now), stopped)
+        self.assertEqual(self.picture("left"), picture)
+        self.assertEqual(self.browser.run("airlight.work.left.head.smoke_time"), stopped)
+        self.browser.run("[...document.querySelectorAll('#flow button')].find(b => b.textContent === 'step').click()")
+        self.browser.wait(f"{time_now} > {stopped}")
+        self.rest()
+        self.assertNotEqual(self.picture("left"), picture)
+
+    def test_a_stroke_changes_the_smoke_and_can_be_taken_away(self):
+        self.browser.wait("airlight.flow.now.time > 0.5")
+        self.pause()
+        before, camera = self.picture("left"), self.browser.run("airlight.stage.camera.position")
+        self.focus()
+        self.browser.key("t", "t")
+        self.browser.drag(self.browser.on_canvas(0.2, 0.55), self.browser.on_canvas(0.4, 0.3))
+        self.assertEqual(self.browser.run("airlight.stage.camera.position"), camera)
+        self.assertEqual(self.picture("left"), before)
+        self.browser.key("p", "p")
+        self.browser.wait("airlight.flow.now.strokes > 0")
+        self.browser.wait("airlight.flow.now.time > 1")
+        self.pause()
+        self.assertNotEqual(self.picture("left"), before)
+        self.browser.run("[...document.querySelectorAll('#flow button')].find(b => b.textContent === 'copy as script').click()")
+        self.browser.wait("document.getElementById('text').open")
+        script = self.browser.run("document.getElementById('text-shown').value")
+        self.browser.run("document.getElementById('text').close()")
+        self.assertEqual(script.count("[[force]]"), self.browser.run("airlight.flow.now.strokes"))
+        self.assertIn("airlight simulate stirred.toml --method stable_fluids --set n=20", script)
+        self.browser.run("[...document.querySelectorAll('#flow button')].find(b => b.textContent === 'reset').click()")
+        self.browser.wait("airlight.flow.now.strokes === 0 && airlight.flow.now.steps < 5")
+        self.browser.key("t", "t")
+
+    def test_a_browser_that_is_killed_stops_the_simulation(self):
+        def processor_seconds():
+            with open(f"/proc/{self.server.process.pid}/stat", encoding="ascii") as file:
+                fields = file.read().rsplit(")", 1)[1].split()
+            return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+        other = Browser()
+        other.call("Page.navigate", url=self.address)
+        other.wait("window.airlight && airlight.flow.now && airlight.stage.pictures.left")
+        self.browser.call("Page.navigate", url="about:blank")
+        other.choose("#flow-pace", "0")
+        before, start = other.run("airlight.flow.now.steps"), processor_seconds()
+        time.sleep(1)
+        self.assertGreater(other.run("airlight.flow.now.steps"), before)
+        self.assertGreater(processor_seconds() - start, 0.1)
+        other.kill()
+        time.sleep(1)
+        start = processor_seconds()
+        time.sleep(1)
+        self.assertLess(processor_seconds() - start, 0.05)
+
+
 if __name__ == "__main__":
     if not BROWSER:
         print("test skipped: there is no chromium")
         sys.exit(0)
-    unittest.main(argv=sys.argv[:1], verbosity=2)
+    unittest.main(verbosity=2)

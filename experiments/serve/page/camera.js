@@ -32,6 +32,12 @@ export function project(camera, aspect, point) {
   return {u: 0.5 + dot(from, f.right) / (2 * h * aspect), v: 0.5 - dot(from, f.up) / (2 * h), depth};
 }
 
+// The point of this depth at u and v on the film.
+export function at_depth(camera, aspect, u, v, depth) {
+  const ahead = add(camera.position, times(frame(camera).forward, depth));
+  return add(ahead, step(camera, aspect, depth, u - 0.5, v - 0.5));
+}
+
 // The step in the world that moves a point of this depth by du and dv on the film.
 export function step(camera, aspect, depth, du, dv) {
   const f = frame(camera), h = half(camera, depth);

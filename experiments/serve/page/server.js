@@ -21,5 +21,24 @@ export const ask = async (question, body) => (await post(question, body)).json()
 export const askText = async (question, body) => (await post(question, body)).text();
 export const askPicture = async (question, body) => decode(await (await post(question, body)).arrayBuffer());
 
+// For as long as the page is seen, a connection stays open: when it ends, the server stops what this page has running. `again` is called
+// when the page is seen again.
+export async function watch(again) {
+  for (let first = true;; first = false) {
+    const hidden = new AbortController(), hide = () => { if (document.hidden) hidden.abort(); };
+    document.addEventListener("visibilitychange", hide);
+    try {
+      const reader = (await post("watch", {}, {signal: hidden.signal})).body.getReader();
+      if (!first) again();
+      while (!(await reader.read()).done);
+    } catch (error) {
+      if (!(error instanceof TypeError) && error.name !== "AbortError") return;  // refused, as every other request will be
+    }
+    document.removeEventListener("visibilitychange", hide);
+    if (document.hidden) await new Promise(done => document.addEventListener("visibilitychange", done, {once: true}));
+    else await new Promise(done => setTimeout(done, 1000));
+  }
+}
+
 // Stops what this page has running.
 export const leave = () => { post("leave", {}, {keepalive: true}).catch(() => {}); };

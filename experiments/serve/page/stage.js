@@ -1,6 +1,6 @@
 // The canvas: where pictures lie on it, and what is drawn over them.
 import {paint, paintDifference, falseColour, falseRange} from "./pictures.js";
-import {project} from "./camera.js";
+import {add, frame, project, times} from "./camera.js";
 
 export const modes = ["wipe", "side by side", "flip", "difference"];
 
@@ -13,6 +13,7 @@ export class Stage {
     this.notes = {left: "", right: "", reference: ""};
     this.layers = {};
     this.handles = [];  // {light, position, name}
+    this.flow = null;  // {lo, hi, ball: {center, radius}}: the box of a flow that is stirred, and what a stroke reaches
     this.camera = null;
     this.aspect = 4 / 3;
     new ResizeObserver(() => this.draw()).observe(canvas);
@@ -111,7 +112,10 @@ export class Stage {
       }
     }
     this.draw_notes(panels, low);
-    for (const panel of panels) this.draw_handles(panel.rect);
+    for (const panel of panels) {
+      this.draw_handles(panel.rect);
+      if (this.flow && this.camera) this.draw_flow(panel.rect);
+    }
     if (v.colours && v.mode !== "difference") this.draw_legend(rect);
   }
 
@@ -138,6 +142,35 @@ export class Stage {
       c.strokeStyle = "#ffd54a";
       c.stroke();
     }
+  }
+
+  draw_flow(rect) {
+    const c = this.context, {lo, hi, ball} = this.flow, corner = bits => lo.map((x, i) => bits >> i & 1 ? hi[i] : x);
+    const at = point => project(this.camera, this.aspect, point);
+    const x = p => rect.x + p.u * rect.width, y = p => rect.y + p.v * rect.height;
+    c.save();
+    c.beginPath();
+    c.rect(rect.x, rect.y, rect.width, rect.height);
+    c.clip();
+    c.beginPath();
+    for (let from = 0; from < 8; ++from)
+      for (const bit of [1, 2, 4]) {
+        const a = at(corner(from)), b = at(corner(from | bit));
+        if (from & bit || !a || !b) continue;
+        c.moveTo(x(a), y(a));
+        c.lineTo(x(b), y(b));
+      }
+    const middle = ball && at(ball.center), edge = ball && at(add(ball.center, times(frame(this.camera).up, ball.radius)));
+    c.lineWidth = this.ratio;
+    c.strokeStyle = "rgba(255,213,74,.5)";
+    c.stroke();
+    if (middle && edge) {
+      c.beginPath();
+      c.arc(x(middle), y(middle), Math.abs(y(edge) - y(middle)), 0, 7);
+      c.lineWidth = 2 * this.ratio;
+      c.stroke();
+    }
+    c.restore();
   }
 
   draw_legend(rect) {
