@@ -9,6 +9,7 @@
 
 #include "gpu/wavelet_fog/wavelet_fog.h"
 #include "methods/wavelet_fog/wavelet_fog.h"
+#include "scene/media/fogmap.h"
 #include "scene/media/spline_map.h"
 #include "tests/gpu/device.h"
 #include "tests/gpu/p99.h"
