@@ -37,7 +37,11 @@ bool casts_shadows(const scene::Scene& scene) {
 
 SurfaceShading::SurfaceShading(Context& context, const scene::Scene& scene, const airlight::fogshop::Model& model,
                                const airlight::fogshop::SurfaceLighting& lighting, const FogOnDevice& fog)
-    : context_(context), model_(model), lighting_(lighting), magnitude_(magnitude(scene)), casts_shadows_(casts_shadows(scene)) {
+    : context_(context),
+      model_(model),
+      lighting_(lighting),
+      magnitude_(magnitude(scene)),
+      casts_shadows_(casts_shadows(scene)) {
   upload_tables(scene, fog);
   become(scene, fog, {});
 }

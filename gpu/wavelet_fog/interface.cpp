@@ -51,7 +51,7 @@ Definitions shared_definitions() {
                                                   {"AMBIENT_LAYER", at::ambient_layer},
                                                   {"SURFACE_LAYER", at::surface_layer},
                                                   {"MEAN_LAYER", at::mean_layer},
-                                       {"SEEN", at::seen}};
+                                                  {"SEEN", at::seen}};
   for (const auto& [name, number] : bindings) definitions[std::string("AT_") + name] = std::to_string(number);
   return definitions;
 }

@@ -56,7 +56,8 @@ double moved_by_rounding(const scene::Scene& scene, const Given& given) {
     double most = 0;
     for (const double side : {-place, place}) {
       const scene::Film there = picture(side * axis);
-      for (const auto& [layer, values] : still.layers) most = std::max(most, gpu::test::quantile(still, there, layer, 1));
+      for (const auto& [layer, values] : still.layers)
+        most = std::max(most, gpu::test::quantile(still, there, layer, 1));
     }
     sum += most;
   }

@@ -129,7 +129,8 @@ DEVICE_TEST_CASE("wavelet fog: the device sees backdrops and particles as the pr
                  "[gpu][wavelet_fog][backdrop]") {
   const std::string sphere = "[[surface]]\ntype = 'sphere'\ncenter = [0, 0, -2]\nradius = 1\n";
   for (const std::string& more : {std::string(), sphere}) {
-    scene::Scene scene = with_backdrops("[[light]]\ntype = 'directional'\nto_light = [1, 3, 2]\nirradiance = 9\n", more);
+    scene::Scene scene =
+        with_backdrops("[[light]]\ntype = 'directional'\nto_light = [1, 3, 2]\nirradiance = 9\n", more);
     auto fog = std::make_shared<scene::Fogmap>();
     std::vector<double> values;
     for (int i = 0; i < 12 * 12; ++i) values.push_back((i * 7) % 5 * 0.4);

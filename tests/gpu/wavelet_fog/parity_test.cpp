@@ -68,9 +68,10 @@ DEVICE_TEST_CASE("wavelet fog: the polar table on the GPU begins at the map's ri
 // The host compresses and converts maps, before they go up.
 DEVICE_TEST_CASE("wavelet fog: changed maps on the GPU are those of the CPU", "[gpu][wavelet_fog]") {
   const auto scene = scene_of(patches(2, 64, 47, 0.8, 7, profiles[1]), 0.2, views[2].first, views[2].second);
-  for (const Given& given : std::vector<Given>{{{"keep", "0.05"}},
-                                               {{"degree", "0"}},
-                                               {{"degree", "1"}, {"keep", "0.2"}, {"variant", "tele"}, {"mu", "0.4"}}}) {
+  for (const Given& given :
+       std::vector<Given>{{{"keep", "0.05"}},
+                          {{"degree", "0"}},
+                          {{"degree", "1"}, {"keep", "0.2"}, {"variant", "tele"}, {"mu", "0.4"}}}) {
     compare(scene, given, 1e-5);
     const std::vector<float> clear = render(wavelet_fog::WaveletFog(), scene, given).film.layer("transmittance");
     CHECK(*std::min_element(clear.begin(), clear.end()) < 0.5);
