@@ -65,6 +65,9 @@ class Context {
   void check_closely(const std::string& what) {
     if (debugging_) check(what);
   }
+  // The driver translates OpenGL for Vulkan (Mesa's zink). It makes a pipeline when a program first runs, and where that fails it
+  // runs nothing and reports no error. LinkedProgram::watch finds that.
+  bool makes_pipelines_late() const { return renderer().rfind("zink", 0) == 0; }
   // For those who tell the failure in words of their own.
   void forget_errors();
   // Until the device has done all it was told.

@@ -55,7 +55,8 @@ namespace airlight::gpu {
   X(PFNGLBINDTEXTUREUNITPROC, BindTextureUnit)                                                                       \
   /* timestamps */                                                                                                   \
   X(PFNGLCREATEQUERIESPROC, CreateQueries) X(PFNGLDELETEQUERIESPROC, DeleteQueries)                                  \
-  X(PFNGLQUERYCOUNTERPROC, QueryCounter) X(PFNGLGETQUERYOBJECTUI64VPROC, GetQueryObjectui64v)
+  X(PFNGLQUERYCOUNTERPROC, QueryCounter) X(PFNGLGETQUERYOBJECTUI64VPROC, GetQueryObjectui64v)                        \
+  X(PFNGLGENQUERIESPROC, GenQueries) X(PFNGLBEGINQUERYPROC, BeginQuery) X(PFNGLENDQUERYPROC, EndQuery)
 // clang-format on
 
 // The functions under their names without "gl".

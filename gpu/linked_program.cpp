@@ -83,6 +83,25 @@ LinkedProgram::LinkedProgram(Context& context, const std::vector<std::pair<GLenu
   context_.label(GL_PROGRAM, id_, files_);
 }
 
+void LinkedProgram::begin_count(GLenum statistic) {
+  GLuint id = 0;
+  context_.gl().GenQueries(1, &id);  // Mesa's CreateQueries knows no statistics
+  count_ = Handle(context_, id, [](const Gl& gl, GLuint query) { gl.DeleteQueries(1, &query); });
+  context_.gl().BeginQuery(statistic, count_);
+}
+
+void LinkedProgram::require_count(GLenum statistic, long invocations) {
+  GLuint64 counted = 0;
+  context_.gl().EndQuery(statistic);
+  context_.gl().GetQueryObjectui64v(count_, GL_QUERY_RESULT, &counted);
+  count_ = Handle();
+  context_.check("running " + files_);
+  if (counted != GLuint64(invocations))
+    throw Error(fmt::format("gpu: {} ran {} invocations of {}, expected {}: its driver made no pipeline for it",
+                            context_.renderer(), counted, files_, invocations));
+  ran_ = true;
+}
+
 std::optional<LinkedProgram::Place> LinkedProgram::place_of(const std::string& variable) const {
   const Gl& gl = context_.gl();
   const GLuint index = gl.GetProgramResourceIndex(id_, GL_BUFFER_VARIABLE, variable.c_str());

@@ -38,6 +38,17 @@ class LinkedProgram {
   std::optional<Place> place_of(const std::string& variable) const;
 
  protected:
+  // Does `work`, a dispatch or a draw of so many invocations. Where the driver makes pipelines late, the first time counts them by
+  // `statistic` (of ARB_pipeline_statistics_query) and throws Error if the number is another.
+  template <class Work>
+  void watch(GLenum statistic, long invocations, Work work) {
+    const bool first = is_watched() && invocations > 0;
+    if (first) begin_count(statistic);
+    work();
+    if (first) require_count(statistic, invocations);
+  }
+  bool is_watched() const { return !ran_ && context_.makes_pipelines_late(); }
+
   Context& context_;
   std::string files_;  // for messages: "gpu/a.vert, gpu/a.frag"
   Handle id_;
@@ -45,9 +56,13 @@ class LinkedProgram {
  private:
   std::optional<Place> place_of_uniform(const std::string& variable) const;
   int location(const std::string& name);
+  void begin_count(GLenum statistic);
+  void require_count(GLenum statistic, long invocations);
 
   std::string text_;
   std::map<std::string, int> locations_;
+  bool ran_ = false;  // seen to run
+  Handle count_;
 };
 
 }  // namespace airlight::gpu

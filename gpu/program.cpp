@@ -46,19 +46,26 @@ void Program::dispatch(int x, int y, int z) {
       throw Error(fmt::format("{}: {} work groups, {} offers at most {}", files_, groups[axis], context_.renderer(),
                               context_.limits().groups[axis]));
   }
-  run([&](const Gl& gl) { gl.DispatchCompute(groups[0], groups[1], groups[2]); });
+  const long all = long(groups[0]) * groups[1] * groups[2];
+  run([&](const Gl& gl) { gl.DispatchCompute(groups[0], groups[1], groups[2]); }, all);
 }
 
 void Program::dispatch_indirect(const Buffer& groups, std::size_t offset) {
+  long all = 0;
+  if (is_watched()) {
+    const std::vector<unsigned> words = groups.download<unsigned>();
+    all = long(words.at(offset / 4)) * words.at(offset / 4 + 1) * words.at(offset / 4 + 2);
+  }
   groups.bind_as(GL_DISPATCH_INDIRECT_BUFFER);
-  run([&](const Gl& gl) { gl.DispatchComputeIndirect(GLintptr(offset)); });
+  run([&](const Gl& gl) { gl.DispatchComputeIndirect(GLintptr(offset)); }, all);
 }
 
 template <class Dispatch>
-void Program::run(Dispatch dispatch) {
+void Program::run(Dispatch dispatch, long groups) {
+  constexpr GLenum invocations = 0x82F5;  // GL_COMPUTE_SHADER_INVOCATIONS_ARB
   const Gl& gl = context_.gl();
   gl.UseProgram(id_);
-  dispatch(gl);
+  watch(invocations, groups * local_[0] * local_[1] * local_[2], [&] { dispatch(gl); });
   gl.MemoryBarrier(GL_ALL_BARRIER_BITS);
   ++dispatch_count;
   ++context_.traffic().dispatches;

@@ -25,7 +25,7 @@ class Program : public LinkedProgram {
 
  private:
   template <class Dispatch>
-  void run(Dispatch);
+  void run(Dispatch, long groups);
 
   int local_[3];
 };

@@ -22,7 +22,9 @@ void RasterProgram::draw(long vertices, int instances) {
   gl.CreateVertexArrays(1, &nothing);
   gl.BindVertexArray(nothing);
   gl.UseProgram(id_);
-  gl.DrawArraysInstanced(GL_TRIANGLES, 0, GLsizei(vertices), instances);
+  constexpr GLenum invocations = 0x82F0;  // GL_VERTEX_SHADER_INVOCATIONS_ARB
+  watch(invocations, vertices * instances,
+        [&] { gl.DrawArraysInstanced(GL_TRIANGLES, 0, GLsizei(vertices), instances); });
   gl.BindVertexArray(0);
   gl.DeleteVertexArrays(1, &nothing);
   ++draw_count;

@@ -34,12 +34,11 @@ void main() {
     return;
   }
   // gram shares = what the residual has of each; the greatest diagonal first, and what is left of the others' combinations is left out.
-  bool gone[KEPT];
+  uint gone = 0u;  // bit i: taken. Mesa's zink makes no pipeline with an array of bool
   int order[KEPT];
   double most = 0;
   for (int i = 0; i < used; ++i) {
     right[i] = total(3 + KEPT + i);
-    gone[i] = false;
     for (int j = 0; j < used; ++j) a[i * KEPT + j] = gram[i * KEPT + j];
     most = max(most, a[i * KEPT + i]);
   }
@@ -47,12 +46,12 @@ void main() {
   for (; rank < used; ++rank) {
     int p = -1;
     for (int i = 0; i < used; ++i)
-      if (!gone[i] && (p < 0 || a[i * KEPT + i] > a[p * KEPT + p])) p = i;
+      if ((gone >> i & 1u) == 0u && (p < 0 || a[i * KEPT + i] > a[p * KEPT + p])) p = i;
     if (!(a[p * KEPT + p] > 1e-13 * most)) break;
-    gone[p] = true;
+    gone |= 1u << p;
     order[rank] = p;
     for (int i = 0; i < used; ++i)
-      if (!gone[i]) {
+      if ((gone >> i & 1u) == 0u) {
         double f = a[i * KEPT + p] / a[p * KEPT + p];
         for (int j = 0; j < used; ++j) a[i * KEPT + j] -= f * a[p * KEPT + j];
         right[i] -= f * right[p];

@@ -241,7 +241,8 @@ void FogOnDevice::fill_sky_volume(const scene::Scene& scene, const scene::Execut
   sky_ = std::make_unique<SkyVolumeOnDevice>(context_, *this, scene, model_, execution);
 }
 
-void FogOnDevice::compose(const scene::View& view, const Buffer* pixels, const Buffer* surface, Frame& frame) {
+void FogOnDevice::compose(const scene::View& view, const Buffer* pixels, const Buffer* surface, const Buffer* seen,
+                          Frame& frame) {
   const Use use_context(context_);
   frame.timer.begin("composition");
   Program& p = *programs_.composition;
@@ -249,6 +250,7 @@ void FogOnDevice::compose(const scene::View& view, const Buffer* pixels, const B
   bind();
   if (pixels) pixels->bind(at::pixels);
   if (surface) surface->bind(at::surface);
+  if (seen) seen->bind(at::seen);
   const int count = view.width * view.height;
   for (const auto& [layer, binding] : {std::pair{"airlight", at::airlight_layer},
                                        {"transmittance", at::transmittance_layer},
@@ -259,6 +261,7 @@ void FogOnDevice::compose(const scene::View& view, const Buffer* pixels, const B
   }
   p.set("has_airlight", pixels != nullptr);
   p.set("has_surface", surface != nullptr);
+  p.set("has_seen", seen != nullptr);
   p.set("pixel_count", count);
   p.dispatch(count);
 }

@@ -56,8 +56,9 @@ class FogOnDevice {
                                         Frame&);
 
   // The film's layers, 3 floats per pixel, in the frame's buffers "airlight", "transmittance", "mean", and into its
-  // download: `pixels` of airlight() (null: there is no medium) and the surfaces' light through it (null: there is none).
-  void compose(const scene::View&, const Buffer* pixels, const Buffer* surface, Frame&);
+  // download: `pixels` of airlight() (null: there is no medium) and the surfaces' light through it (null: there is none). What
+  // backdrops show (`seen` of gpu/raster/backdrops.h, null: there are none) takes the place of surfaces.
+  void compose(const scene::View&, const Buffer* pixels, const Buffer* surface, const Buffer* seen, Frame&);
 
   // A program that includes fog.glsl, to be found once and kept.
   Program& program(const char* file, Definitions definitions) const;

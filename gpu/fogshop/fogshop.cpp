@@ -10,7 +10,9 @@
 #include "gpu/fogshop/fog.h"
 #include "gpu/fogshop/interface.h"
 #include "gpu/fogshop/surface_pass.h"
+#include "gpu/raster/backdrops.h"
 #include "gpu/raster/first_hits.h"
+#include "gpu/wavelet_fog/surface_light.h"
 #include "methods/fogshop/fogshop.h"
 #include "methods/fogshop/surface_lighting.h"
 #include "scene/base/error.h"
@@ -29,18 +31,15 @@ using scene::View;
 
 class PreparedFogshopGpu final : public scene::Prepared {
  public:
-  // `map_side`: texels to a face of the light-distance maps.
-  PreparedFogshopGpu(std::shared_ptr<const Scene> scene, const scene::Settings& settings, int map_side,
-                     const Execution& execution)
+  PreparedFogshopGpu(std::shared_ptr<const Scene> scene, const scene::Settings& settings, const Execution& execution)
       : given_(settings),
         options_(airlight::fogshop::read_options(settings)),
         context_(Context::get()),
-        map_side_(map_side),
         frame_(context_) {
     times_ = prepare(std::move(scene), execution);
   }
 
-  std::vector<scene::Stage> stages() const override;
+  std::vector<scene::Stage> stages() const override { return plan_.stages; }
   std::vector<scene::StageTime> prepare_times() const override { return times_; }
   scene::Rendering render(const View&, const Execution&) const override;
   std::optional<std::vector<scene::StageTime>> next(std::shared_ptr<const Scene>, const Execution&) override;
@@ -48,7 +47,7 @@ class PreparedFogshopGpu final : public scene::Prepared {
  private:
   // Buffers of a frame on the device, null if the scene does not need them.
   struct Picture {
-    const Buffer *distances = nullptr, *primitives = nullptr, *airlight = nullptr, *surface = nullptr;
+    const Buffer *distances = nullptr, *primitives = nullptr, *seen = nullptr, *airlight = nullptr, *surface = nullptr;
   };
   std::vector<scene::StageTime> prepare(std::shared_ptr<const Scene>, const Execution&);
   void prepare_surfaces(const airlight::fogshop::Unchanged&);
@@ -63,13 +62,12 @@ class PreparedFogshopGpu final : public scene::Prepared {
   airlight::fogshop::Model model_;
   airlight::fogshop::Plan plan_;
   const airlight::fogshop::Needs& needs_ = plan_.needs;
-  bool casts_shadows_ = false;
   Context& context_;
-  int map_side_;
   mutable Frame frame_;
   airlight::fogshop::SurfaceLighting lighting_;
   std::unique_ptr<FogOnDevice> fog_;
-  std::unique_ptr<FirstHits> first_hits_;    // null: rays are infinite
+  std::unique_ptr<FirstHits> first_hits_;    // null: no surface and no ball ends rays
+  std::unique_ptr<Backdrops> backdrops_;     // null: there are none
   std::unique_ptr<SurfaceShading> shading_;  // null: left out
   std::unique_ptr<Background> background_;   // null: left out
   std::vector<scene::StageTime> times_;
@@ -107,15 +105,16 @@ std::vector<scene::StageTime> PreparedFogshopGpu::prepare(std::shared_ptr<const 
   lighting_ = std::move(lighting);
   model_ = std::move(model);
   plan_ = std::move(plan);
-  casts_shadows_ = needs_.surfaces && casts_shadows(*scene_, model_);
   if (fog_) {
     fog_->become(needs_, on_device);
   } else {
     fog_ = std::make_unique<FogOnDevice>(context_, model_, needs_);
     if (needs_.f_table) timer.stage("table of F");
   }
-  if (!needs_.distances || !(first_hits_ && first_hits_->move_balls(*scene_))) first_hits_.reset();
-  if (needs_.distances && !first_hits_) first_hits_ = std::make_unique<FirstHits>(context_, *scene_);
+  if (!(first_hits_ && first_hits_->move_balls(*scene_))) first_hits_.reset();
+  if (!first_hits_ && wavelet_fog::something_ends_rays(*scene_))
+    first_hits_ = std::make_unique<FirstHits>(context_, *scene_);
+  backdrops_ = scene_->backdrops.empty() ? nullptr : std::make_unique<Backdrops>(context_, *scene_);
   timer.stage("upload");
   maps_made_ = needs_.light_maps ? fog_->fill_light_maps() : 0;
   if (maps_made_ > 0) timer.stage("light maps");
@@ -139,8 +138,6 @@ void PreparedFogshopGpu::prepare_surfaces(const airlight::fogshop::Unchanged& sa
   const bool made = !shading_;
   if (made) shading_ = std::make_unique<SurfaceShading>(context_, *scene_, model_, lighting_, *fog_);
   if (made || shading_->become(*scene_, *fog_, same)) frame_.timer.stage("tables of surfaces");
-  if (casts_shadows_ && shading_->fill_light_distances(*scene_, map_side_) > 0)
-    frame_.timer.stage("light-distance maps");
 }
 
 std::optional<std::vector<scene::StageTime>> PreparedFogshopGpu::next(std::shared_ptr<const Scene> scene,
@@ -148,7 +145,8 @@ std::optional<std::vector<scene::StageTime>> PreparedFogshopGpu::next(std::share
   if (!Fogshop().supports(*scene, given_).empty()) return std::nullopt;
   const Traffic before = context_.traffic();
   std::vector<scene::StageTime> times;
-  if (airlight::fogshop::camera_alone_moved(*scene_, *scene)) {
+  // Backdrops belong to a camera.
+  if (scene->backdrops.empty() && airlight::fogshop::camera_alone_moved(*scene_, *scene)) {
     scene_ = std::move(scene);
     plan_ = airlight::fogshop::make_plan(*scene_, model_);
     maps_made_ = 0;
@@ -159,27 +157,17 @@ std::optional<std::vector<scene::StageTime>> PreparedFogshopGpu::next(std::share
   return times;
 }
 
-std::vector<scene::Stage> PreparedFogshopGpu::stages() const {
-  auto stages = plan_.stages;
-  const std::string why_not = scene_->surfaces.empty() ? "there are no surfaces"
-                              : model_.lights.empty()  ? "no point light shines"
-                                                       : "a lone plane or sphere casts no shadow";
-  const std::string why = fmt::format("shadows of surfaces: 6 faces of {0}^2 for each of {1} point light{2}", map_side_,
-                                      model_.lights.size(), model_.lights.size() == 1 ? "" : "s");
-  const auto surfaces =
-      std::find_if(stages.begin(), stages.end(), [](const scene::Stage& stage) { return stage.name == "surfaces"; });
-  stages.insert(surfaces, {"light-distance maps", casts_shadows_, casts_shadows_ ? why : why_not});
-  return stages;
-}
-
 // Section 5.4, step 1: d_vp of every pixel [m], and what is seen there.
 void PreparedFogshopGpu::find_distances(const View& view, Picture& picture) const {
-  if (!first_hits_) return;
+  if (!first_hits_ && !backdrops_) return;
   frame_.timer.begin("distances");
   const std::size_t bytes = std::size_t(view.width) * view.height * 4;
   picture.distances = &frame_.buffers.get("distances", bytes);
   if (shading_) picture.primitives = &frame_.buffers.get("primitives", bytes);
-  first_hits_->find(view, *picture.distances, picture.primitives);
+  if (first_hits_) first_hits_->find(view, *picture.distances, picture.primitives);
+  if (!backdrops_) return;
+  picture.seen = &frame_.buffers.get("seen", 3 * bytes);
+  backdrops_->find(view, *picture.distances, bool(first_hits_), *picture.seen, picture.primitives);
 }
 
 void PreparedFogshopGpu::find_airlight(const View& view, Picture& picture) const {
@@ -194,17 +182,20 @@ void PreparedFogshopGpu::find_airlight(const View& view, Picture& picture) const
   }
   const airlight::fogshop::LowResolution low{view.width, view.height, model_.options.downsample};
   const Buffer* distances = nullptr;
-  if (first_hits_) {
+  if (picture.distances) {
     frame_.timer.begin("distances, low resolution");
     distances = &frame_.buffers.get("low distances", std::size_t(low.low_width()) * low.low_height() * 4);
-    first_hits_->find(view, *distances, nullptr, {low.factor, 0});
+    if (first_hits_) first_hits_->find(view, *distances, nullptr, {low.factor, 0});
+    const double side = low.factor;
+    if (backdrops_)
+      backdrops_->find(view, *distances, bool(first_hits_), {low.low_width(), low.low_height(), side, side, 0.5, 0.5});
   }
   picture.airlight = &fog_->low_resolution_airlight(view, picture.distances, distances, frame_);
 }
 
 // Steps 4 and 7: e^-T L_p of Eq. 29.
 void PreparedFogshopGpu::find_surfaces(const View& view, Picture& picture) const {
-  if (!shading_ && !background_) return;
+  if (!shading_ && !background_ && !backdrops_) return;
   const std::size_t bytes = std::size_t(view.width) * view.height * 12;
   Buffer& surface = frame_.buffers.get("surface", bytes);
   picture.surface = &surface;
@@ -249,7 +240,7 @@ scene::Rendering PreparedFogshopGpu::render(const View& view, const Execution& e
   find_airlight(view, picture);
   find_surfaces(view, picture);
   if (picture.airlight || picture.surface)
-    fog_->compose(view, picture.airlight, picture.surface, frame_);  // L = L_a + e^-T L_p, Eq. 29
+    fog_->compose(view, picture.airlight, picture.surface, picture.seen, frame_);  // L = L_a + e^-T L_p, Eq. 29
   frame_.finish(result);
   if (!picture.airlight && !picture.surface) {  // no medium, and nothing that shines
     film.add("airlight");
@@ -271,29 +262,16 @@ scene::Rendering PreparedFogshopGpu::render(const View& view, const Execution& e
   return result;
 }
 
-struct LightDistanceMaps {
-  int side = 512;
-};
-void bind_maps(scene::SettingBinder& b, LightDistanceMaps& maps) {
-  b.integer("light_distance_side", maps.side, 1, 8192,
-            "texels to a side of a light-distance map's six faces; shadows are exact whatever it is");
-}
-
 }  // namespace
 
 std::string Fogshop::about() const {
   return "fogshop in compute shaders, single precision: variants paper and S (Zhou et al. 2007)";
 }
 
-std::vector<scene::SettingSpec> Fogshop::settings() const {
-  auto settings = airlight::fogshop::Fogshop().settings();
-  settings.push_back(scene::list_settings(bind_maps).front());
-  return settings;
-}
+std::vector<scene::SettingSpec> Fogshop::settings() const { return airlight::fogshop::Fogshop().settings(); }
 
 std::vector<std::string> Fogshop::supports(const Scene& scene, const scene::Settings& settings) const {
   std::vector<std::string> reasons = airlight::fogshop::Fogshop().supports(scene, settings);
-  refuse_backdrops(scene, reasons);
   for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
   if (scene.lights.size() > most_lights)
     reasons.push_back(fmt::format("{} lights: the shader has room for {}", scene.lights.size(), most_lights));
@@ -303,8 +281,7 @@ std::vector<std::string> Fogshop::supports(const Scene& scene, const scene::Sett
 std::unique_ptr<scene::Prepared> Fogshop::prepare_supported(std::shared_ptr<const Scene> scene,
                                                             const scene::Settings& settings,
                                                             const Execution& execution) const {
-  return std::make_unique<PreparedFogshopGpu>(std::move(scene), settings,
-                                              scene::read_settings(bind_maps, settings).side, execution);
+  return std::make_unique<PreparedFogshopGpu>(std::move(scene), settings, execution);
 }
 
 }  // namespace airlight::gpu::fogshop

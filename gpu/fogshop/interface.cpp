@@ -36,7 +36,8 @@ const std::vector<Binding> bindings = {{"GAUSSIANS", at::gaussians},
                                        {"LIGHT_LISTS", at::light_lists},
                                        {"AIRLIGHT_LAYER", at::airlight_layer},
                                        {"TRANSMITTANCE_LAYER", at::transmittance_layer},
-                                       {"MEAN_LAYER", at::mean_layer}};
+                                       {"MEAN_LAYER", at::mean_layer},
+                                       {"SEEN", at::seen}};
 
 const std::vector<Layout> layouts = {{"gaussians[0].a", offsetof(GaussianData, a), sizeof(GaussianData)},
                                      {"gaussians[0].place", offsetof(GaussianData, place), sizeof(GaussianData)},

@@ -8,15 +8,14 @@
 
 namespace airlight::gpu::fogshop {
 
-// Storage blocks, AT_... in shaders. gpu/raster has 10 to 12 and 14 (surfaces, the tree) and 5 (light
-// distances), gpu/common 9 (values of an environment). Blocks that no shader uses together share a
+// Storage blocks, AT_... in shaders. gpu/raster has 10 to 12 and 14 (surfaces, the tree), gpu/common 9
+// (values of an environment). Blocks that no shader uses together share a
 // number. `lights` is a uniform block.
 namespace at {
 enum Binding {
   gaussians = 0,
   lights = 4,
   light_maps = 5,
-  light_primitives = 5,
   pixels = 6,
   surface = 7,
   depths = 8,
@@ -46,6 +45,7 @@ enum Binding {
   airlight_layer = 1,
   transmittance_layer = 2,
   mean_layer = 3,
+  seen = 5,
 };
 }  // namespace at
 

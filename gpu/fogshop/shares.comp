@@ -3,6 +3,7 @@
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "common/camera.glsl"
 #include "common/angle.glsl"
+#include "common/opacity.glsl"
 #include "fogshop/fog.glsl"
 #include "fogshop/pixels.glsl"
 #include "fogshop/near.glsl"
@@ -24,8 +25,8 @@ void main() {
   bool wanted = pixel.x < grid_width;
   float lo = wanted ? ray_value[value_at(slices_from, ray)] : 0, hi = wanted ? ray_value[value_at(slices_to, ray)] : 0;
   wanted = lo < hi;
-  float opacity = wanted ? ray_value[value_at(opacity_sum, ray)] : 0;
-  bool boxed = boxes != 0 && opacity > 0;
+  float taken = wanted ? ray_value[value_at(opacity_sum, ray)] : 0;
+  bool boxed = boxes != 0 && taken > 0;
   if (!any_of_group(boxed)) count = 0;
   vec3 origin, direction;
   camera_ray(film_position(pixel), origin, direction);
@@ -55,7 +56,7 @@ void main() {
       float slope = c.a / 3.2, offset = 0.5 - c.middle * slope;
       if (!boxed || !c.met || node[nodes_each - 1] * slope + offset <= 0) continue;
       add_view_depth(g, origin, direction, end, c);
-      float weight = (1 - exp(-2 * c.depth)) / (parts * opacity);
+      float weight = opacity(2 * c.depth) / (parts * taken);
 #define ADD_SHARE(k) share[k] += weight * clamp(node[k] * slope + offset, 0, 1);
 #define ADD_BLOCK(b)                                                                          \
   if (node[8 * b] * slope + offset >= 1) {                                                    \

@@ -12,12 +12,40 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 
 uniform int extrapolate;
 
-// Optical depth of all Gaussians between two points.
-float gaussian_depth(vec3 from, vec3 to) {
-  float length_ = length(to - from), sum = 0;
-  vec3 direction = length_ > 0 ? (to - from) / length_ : vec3(0, 0, 1);
+// The triangle from the light to both ends of the slices, in the slab and the half spaces of near_triangle
+// (methods/fogshop/kernels.cpp). Where the light stands on the ray all normals are 0, and nothing is beyond.
+struct Triangle {
+  vec3 begin, end, light;  // corners [m]
+  vec3 normal, beside_ray, beside_end, beside_begin;
+};
+Triangle triangle_of(vec3 begin, vec3 end, vec3 light, vec3 direction) {
+  vec3 across = cross(direction, light - begin);
+  float h = length(across);
+  Triangle t = Triangle(begin, end, light, vec3(0), vec3(0), vec3(0), vec3(0));
+  // Below this single precision does not know the plane.
+  if (!(h > 1e-5 * (length(light - begin) + length(light - end)))) return t;
+  t.normal = across / h;
+  t.beside_ray = normalize(cross(end - begin, t.normal));
+  t.beside_end = normalize(cross(light - end, t.normal));
+  t.beside_begin = normalize(cross(begin - light, t.normal));
+  return t;
+}
+bool is_near(Triangle t, Gaussian g) {
+  float beyond = abs(dot(t.normal, g.center - t.begin));
+  beyond = max(beyond, dot(t.beside_ray, g.center - t.begin));
+  beyond = max(beyond, dot(t.beside_end, g.center - t.end));
+  beyond = max(beyond, dot(t.beside_begin, g.center - t.light));
+  return beyond * beyond <= g.radius_squared;
+}
+
+// Optical depth between the light and a point of the ray, of the Gaussians near the triangle.
+float gaussian_depth(Triangle t, vec3 to) {
+  float length_ = length(to - t.light), sum = 0;
+  vec3 direction = length_ > 0 ? (to - t.light) / length_ : vec3(0, 0, 1);
   for (int i = 0; i < gaussian_count; ++i) {
-    Crossing c = cross_line(gaussians[i], from, direction, length_);
+    Gaussian g = gaussians[i];
+    if (!is_near(t, g)) continue;
+    Crossing c = cross_line(g, t.light, direction, length_);
     sum += depth_at(c, length_);  // whole: what lies beyond its radius counts, as on the CPU
   }
   return sum;
@@ -75,6 +103,9 @@ void main() {
   for (int l = 0; l < light_count; ++l) {
     Light light = lights[l];
     LightFromRay seen = light_from_ray(light, origin, direction);
+#if LIGHT_DEPTH == 2
+    Triangle triangle = triangle_of(origin + lo * direction, origin + hi * direction, light.position, direction);
+#endif
     float h = max(length(vec2(seen.h, source_radius)), least_h), view_depth = before;
     vec3 sum = vec3(0), half_sum = vec3(0), pair_scattered = vec3(0);
     Edge last = Edge(0, 0, 0), pair = last;
@@ -83,7 +114,13 @@ void main() {
       float t = ray_value[value_at(edges + k, ray)], depth = k > 0 ? ray_value[value_at(slices + k, ray)] : 0;
       view_depth += depth;
       vec3 x = origin + t * direction;
-      float shadow = LIGHT_DEPTH == 0 ? 0 : LIGHT_DEPTH == 1 ? light_depth(light, x) : gaussian_depth(light.position, x);
+#if LIGHT_DEPTH == 0
+      float shadow = 0;
+#elif LIGHT_DEPTH == 1
+      float shadow = light_depth(light, x);
+#else
+      float shadow = gaussian_depth(triangle, x);
+#endif
       Edge here = Edge(t, view_depth + (shadow + constant * length(vec2(t - seen.along, seen.h))), shadow);
       if (k > 0) {
         vec3 scattered = scattered_by(k - 1, ray, depth);

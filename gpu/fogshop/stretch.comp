@@ -3,6 +3,7 @@
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "common/camera.glsl"
 #include "common/angle.glsl"
+#include "common/opacity.glsl"
 #include "fogshop/fog.glsl"
 #include "fogshop/pixels.glsl"
 #include "fogshop/near.glsl"
@@ -59,7 +60,7 @@ void main() {
   if (count < 0) return;  // the whole tile
 
   // Reach of the Gaussians, the light that they take away, the depth of the whole ray.
-  float reach_lo = far_away, reach_hi = -far_away, opacity = 0, depth = 0;
+  float reach_lo = far_away, reach_hi = -far_away, taken = 0, depth = 0;
   for (int first = 0; first < count; first += group_size) {
     int loaded = load_near(first, count);
     for (int i = 0; i < loaded; ++i) {
@@ -69,7 +70,7 @@ void main() {
       c.start = place_at(-c.a * c.middle);
       reach_lo = min(reach_lo, c.middle - c.chord);
       reach_hi = max(reach_hi, c.middle + c.chord);
-      opacity += 1 - exp(-2 * c.depth);
+      taken += opacity(2 * c.depth);
       depth += depth_at(c, end);
     }
   }
@@ -96,7 +97,7 @@ void main() {
   bool sliced = visible && lo < hi;
   ray_value[value_at(slices_from, ray)] = sliced ? lo : 0;
   ray_value[value_at(slices_to, ray)] = sliced ? hi : 0;
-  ray_value[value_at(opacity_sum, ray)] = opacity;
+  ray_value[value_at(opacity_sum, ray)] = taken;
   if (sliced) write_nodes(ray, origin, direction, lo, hi);
 #endif
 #endif

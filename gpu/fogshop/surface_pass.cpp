@@ -27,17 +27,21 @@ double magnitude(const scene::Scene& scene) {
   return most;
 }
 
-}  // namespace
-
-bool casts_shadows(const scene::Scene& scene, const airlight::fogshop::Model& model) {
-  return !model.lights.empty() &&
-         (scene.surfaces.size() > 1 ||
-          (scene.surfaces.size() == 1 && std::holds_alternative<scene::TriangleMesh>(scene.surfaces.front().shape)));
+// A lone plane or sphere shadows itself alone, where it is turned away from the light.
+bool casts_shadows(const scene::Scene& scene) {
+  return scene.surfaces.size() > 1 ||
+         (scene.surfaces.size() == 1 && std::holds_alternative<scene::TriangleMesh>(scene.surfaces.front().shape));
 }
+
+}  // namespace
 
 SurfaceShading::SurfaceShading(Context& context, const scene::Scene& scene, const airlight::fogshop::Model& model,
                                const airlight::fogshop::SurfaceLighting& lighting, const FogOnDevice& fog)
-    : context_(context), model_(model), lighting_(lighting), magnitude_(magnitude(scene)) {
+    : context_(context),
+      model_(model),
+      lighting_(lighting),
+      magnitude_(magnitude(scene)),
+      casts_shadows_(casts_shadows(scene)) {
   upload_tables(scene, fog);
   become(scene, fog, {});
 }
@@ -133,14 +137,6 @@ void SurfaceShading::list_gaussians(const FogOnDevice& fog) {
   }
 }
 
-int SurfaceShading::fill_light_distances(const scene::Scene& scene, int side) {
-  std::vector<Point3> positions;
-  for (const airlight::fogshop::LightModel& light : model_.lights) positions.push_back(light.position);
-  if (maps_) return maps_->move(positions);
-  maps_ = std::make_unique<LightDistances>(context_, scene, positions, side);
-  return int(positions.size());
-}
-
 void SurfaceShading::shade(const FogOnDevice& fog, const FirstHits& hits, const scene::View& view,
                            const Buffer& primitives, const Buffer* pixels, const Buffer& surface,
                            const Buffer* scattered) {
@@ -156,10 +152,7 @@ void SurfaceShading::shade(const FogOnDevice& fog, const FirstHits& hits, const 
   if (lighting_.transfer) transfer_->bind(at::transfer);
   primitives.bind(at::primitives);
   if (lists_) lists_->bind(at::light_lists);
-  if (maps_) {
-    maps_->primitives().bind(at::light_primitives);
-    hits.tree().bind(p);
-  }
+  hits.tree().bind(p);
   if (pixels) pixels->bind(at::pixels);
   surface.bind(at::surface);
   if (scattered) scattered->bind(at::scattered);
@@ -168,7 +161,7 @@ void SurfaceShading::shade(const FogOnDevice& fog, const FirstHits& hits, const 
   p.set("cells", cells_);
   p.set("triangle_count", surfaces.triangles());
   p.set("loop_count", 3);
-  p.set("map_side", maps_ ? maps_->side() : 0);
+  p.set("casts_shadows", casts_shadows_);
   p.set("has_airlight", pixels != nullptr);
   p.set("has_scattered", scattered != nullptr);
   for (const auto& [name, place] : uniforms_) p.set(name, place);

@@ -5,7 +5,7 @@
 
 #include "gpu/fogshop/fog.h"
 #include "gpu/fogshop/surface_tables.h"
-#include "gpu/raster/light_distances.h"
+#include "gpu/raster/first_hits.h"
 
 namespace airlight::gpu::fogshop {
 
@@ -19,10 +19,6 @@ class SurfaceShading {
   // The model and the lighting have become those of the next frame, which runs the same programs of fogs (is_like) and has the same surfaces:
   // uploads what has changed, and lists Gaussians anew where they or lights have moved. False if there was nothing to do.
   bool become(const scene::Scene&, const FogOnDevice&, const airlight::fogshop::Unchanged&);
-
-  // Light-distance maps of `side` texels to a face, where anything can cast a shadow (casts_shadows): how many are drawn, those that are there
-  // already left out.
-  int fill_light_distances(const scene::Scene&, int side);
 
   // e^-T L_p of every pixel, 3 floats each: `pixels` as FogOnDevice::airlight left them (null: there is no medium),
   // `primitives` as the first hits did. The scattered part into `scattered` too, if it is there.
@@ -45,12 +41,8 @@ class SurfaceShading {
 
   std::unique_ptr<Buffer> numbers_, lists_;  // Gaussians by cells of directions from each light
   int cells_ = 0;                            // to a side
-  std::unique_ptr<LightDistances> maps_;     // null: nothing casts a shadow
+  bool casts_shadows_ = false;               // some surface may shadow another one
   Program* program_;
 };
-
-// A point light shines on something that is not a lone plane or sphere, which shadows itself only where it is turned
-// away.
-bool casts_shadows(const scene::Scene&, const airlight::fogshop::Model&);
 
 }  // namespace airlight::gpu::fogshop

@@ -4,7 +4,7 @@
 // what is in harmonics; ENVIRONMENT: light of one, DEPTH_TREE: through average depths by a tree.
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "raster/view.glsl"
-#include "raster/light_distances.glsl"
+#include "raster/shadow_tree.glsl"
 #include "common/loops_cut.glsl"
 #include "fogshop/fog.glsl"
 #include "fogshop/light.glsl"
@@ -29,7 +29,13 @@ uniform float environment_depth;  // of the constant up to the environment [-]
 #if SUN
 #include "fogshop/sun.glsl"
 #endif
-uniform double nudge;  // [m] off the surface, where shadow rays start
+uniform double nudge;       // [m] off the surface, where shadow rays start
+uniform int casts_shadows;  // 0: each surface shadows at most itself
+
+bool in_shadow(int own, dvec3 point, dvec3 to_light, double end) {
+  return primitive_blocks(own, true, point, to_light, end) ||
+         (casts_shadows != 0 && tree_blocks(own, point, to_light, end));
+}
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -66,7 +72,7 @@ void main() {
         if (cosine > 0) {
           reflectance = brdf(material, n, towards, to_view);
           if (any(greaterThan(reflectance, vec3(0))) &&
-              in_shadow(l, primitive, point + nudge * normal, to_light, distance_))
+              in_shadow(primitive, point + nudge * normal, to_light, distance_))
             reflectance = vec3(0);
         }
         if (has_scattered == 0 && !any(greaterThan(reflectance, vec3(0)))) continue;

@@ -145,7 +145,7 @@ void LightMaps::make(const ray_marcher::MediaOnDevice& media, const std::vector<
   const int steps = options_.steps, planes = varied_.planes, floats = floats_per_texel(options_);
   double per_step = 0;  // iterations
   for (const airlight::ray_marcher::Layer& layer : layers)
-    per_step += 2 + (layer.gaussians ? double(layer.gaussians->count) : 0);
+    per_step += 2 + (layer.varies ? ray_marcher::density_iterations(layer) : 0);
   if (context_.software() && per_step > most_iterations)
     throw Unavailable(fmt::format("gpu: a step of a light's map takes {:.0f} iterations, {} stops after 65535",
                                   per_step, context_.renderer()));

@@ -7,6 +7,7 @@ layout(std430, binding = 0) buffer Distances { float distances[]; };
 layout(std430, binding = 1) buffer Seen { float seen[]; };
 layout(std430, binding = 2) readonly buffer Depths { float depth_of[]; };  // infinite: no end
 layout(std430, binding = 3) readonly buffer Radiances { float radiance_of[]; };
+layout(std430, binding = 4) buffer Primitives { int primitive_of[]; };  // -1: none
 uniform int picture_width, picture_height;
 uniform int fills;                 // 0: without an end there is nothing
 uniform int first, has_distances;  // 0: `seen` is of those before; rays are infinite so far
@@ -16,6 +17,7 @@ uniform double cell_width, cell_height;  // [pixels]
 uniform int cut;                         // 1: cells end at the film's edge
 uniform double cell_x, cell_y;           // where rays go through, from 0 to 1 of a cell
 uniform int keeps_seen;                  // 0: distances alone
+uniform int has_primitives;              // 1: those behind a backdrop become none
 
 void main() {
   ivec2 at = ivec2(gl_GlobalInvocationID.xy);
@@ -39,6 +41,7 @@ void main() {
   bool none = first != 0 || keeps_seen == 0 || seen[3 * place] < 0;
   bool ends = endless ? fills != 0 && nearest >= far_away && none : t < nearest;
   if (ends || has_distances == 0) distances[place] = ends ? t : nearest;
+  if (ends && has_primitives != 0) primitive_of[place] = -1;
   if (keeps_seen == 0 || (!ends && first == 0)) return;
   for (int c = 0; c < 3; ++c) seen[3 * place + c] = ends ? radiance_of[3 * pixel + c] : -1;
 }

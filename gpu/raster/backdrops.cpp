@@ -21,24 +21,27 @@ Backdrops::Backdrops(Context& context, const scene::Scene& scene)
   for (const auto& backdrop : scene.backdrops) pictures_.push_back(std::make_unique<Picture>(context, *backdrop));
 }
 
-void Backdrops::find(const scene::View& view, const Buffer& distances, bool known, const Buffer& seen) const {
-  find(view, distances, known, &seen, {view.width, view.height, 1, 1, 0.5, 0.5});
+void Backdrops::find(const scene::View& view, const Buffer& distances, bool known, const Buffer& seen,
+                     const Buffer* primitives) const {
+  find(view, distances, known, &seen, primitives, {view.width, view.height, 1, 1, 0.5, 0.5});
 }
 
 void Backdrops::find(const scene::View& view, const Buffer& distances, bool known, const CellGrid& grid) const {
-  find(view, distances, known, nullptr, grid);
+  find(view, distances, known, nullptr, nullptr, grid);
 }
 
 void Backdrops::find(const scene::View& view, const Buffer& distances, bool known, const Buffer* seen,
-                     const CellGrid& grid) const {
+                     const Buffer* primitives, const CellGrid& grid) const {
   require_own_camera(scene_, view);
   set_camera(program_, view);
   distances.bind(0);
   (seen ? *seen : distances).bind(1);
+  (primitives ? *primitives : distances).bind(4);
   program_.set("columns", grid.columns);
   program_.set("rows", grid.rows);
   program_.set("first_ray", int(grid.first));
   program_.set("keeps_seen", seen != nullptr);
+  program_.set("has_primitives", primitives != nullptr);
   program_.set("cut", grid.cut);
   program_.set_double("cell_width", grid.width);
   program_.set_double("cell_height", grid.height);

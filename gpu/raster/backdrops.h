@@ -15,14 +15,16 @@ class Backdrops {
   Backdrops(Context&, const scene::Scene&);
 
   // For every pixel centre. Row 0 first, x fastest. `distances` [m along the rays], which end what surfaces do (`known`) or nothing, become those of backdrops
-  // where these are nearer; `seen`, 3 floats a pixel, what they send from there [W/m^2/sr], -1 where none is seen. Throws Error for a
-  // view that is not through the scene's own camera.
-  void find(const scene::View&, const Buffer& distances, bool known, const Buffer& seen) const;
+  // where these are nearer; `seen`, 3 floats a pixel, what they send from there [W/m^2/sr], -1 where none is seen. Primitives of
+  // FirstHits, unless null, become -1 there. Throws Error for a view that is not through the scene's own camera.
+  void find(const scene::View&, const Buffer& distances, bool known, const Buffer& seen,
+            const Buffer* primitives = nullptr) const;
   // Distances alone, for the rays of a grid.
   void find(const scene::View&, const Buffer& distances, bool known, const CellGrid&) const;
 
  private:
-  void find(const scene::View&, const Buffer& distances, bool known, const Buffer* seen, const CellGrid&) const;
+  void find(const scene::View&, const Buffer& distances, bool known, const Buffer* seen, const Buffer* primitives,
+            const CellGrid&) const;
   struct Picture {
     int width, height;
     bool fills;

@@ -76,7 +76,7 @@ float gaussian_column(int k, vec3 o, vec3 d, vec2 t) {
     return sum * h;
   }
   for (int i = layers[k].first; i < layers[k].first + layers[k].count; ++i) {
-    Gaussian g = gaussians[i];
+    Gaussian g = gaussian_at(i);
     Profile p = profile(g, o, d);
     if (!p.met) continue;
     // Steps within reach.
@@ -98,7 +98,7 @@ float gaussian_integral(int k, vec3 o, vec3 d, vec2 t) {
   float sum = 0;
   work += uint(layers[k].count);
   for (int i = layers[k].first; i < layers[k].first + layers[k].count; ++i) {
-    Gaussian g = gaussians[i];
+    Gaussian g = gaussian_at(i);
     Profile p = profile(g, o, d);
     if (!p.met) continue;
     float reach = p.rate * p.spread;  // where it is cut off, or as good as zero, is outside
@@ -109,18 +109,18 @@ float gaussian_integral(int k, vec3 o, vec3 d, vec2 t) {
 }
 #endif
 
-#if GRIDS || GAUSSIANS
-uniform float deepest_shadow_step;
-
-float local_density(int k, vec3 p) {
-#if GRIDS
-  if (layers[k].field == field_grid) return grid_density(k, p);
-#endif
-#if GAUSSIANS
-  if (layers[k].field == field_gaussians) return gaussian_density(k, p);
-#endif
-  return 0;
+#if SERIES
+float series_column(int k, vec3 o, vec3 d, vec2 t) {
+  float n = steps_of(t.y - t.x), h = (t.y - t.x) / n, sum = 0;
+  shadow_step_count += uint(n);
+  for (float i = 0; i < n; ++i) sum += local_density(k, o + (t.x + (i + 0.5) * h) * d);
+  work += uint(n);
+  return sum * h;
 }
+#endif
+
+#if GRIDS || GAUSSIANS || SERIES
+uniform float deepest_shadow_step;
 
 // reference/ray_marcher/depth.h: is the first step deep, and the column of such a ray. Beyond 20 optical depths, 2e-9 of
 // the light, steps are as they come: plan.cpp bounds their number.
@@ -165,11 +165,14 @@ float column_of(int k, vec3 x, vec3 direction, float distance_) {
   t = clip_field(k, x, direction, t);
   if (!(t.x < t.y)) return column;
   vec3 o = to_local(layers[k].field_frame, x), d = rotate_to_local(layers[k].field_frame, direction);
-#if GRIDS || GAUSSIANS
+#if GRIDS || GAUSSIANS || SERIES
   if (exact_shadow == 0 && starts_deep(k, o, d, t)) return column + deep_column(k, o, d, t);
 #endif
 #if GRIDS
   if (layers[k].field == field_grid) return column + grid_column(k, o, d, t);
+#endif
+#if SERIES
+  if (layers[k].field == field_map || layers[k].field == field_series) return column + series_column(k, o, d, t);
 #endif
 #if GAUSSIANS
   return column + (exact_shadow != 0 ? gaussian_integral(k, o, d, t) : gaussian_column(k, o, d, t));

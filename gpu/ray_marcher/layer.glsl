@@ -4,7 +4,7 @@ const float far_away = 1e37;  // [m] and beyond: an infinite ray
 const float endless = 1e30;   // [m] stands for an endless column: any extinction makes it black, zero extinction does not
 
 const int shape_everything = 0, shape_box = 1, shape_sphere = 2, shape_slab = 3;
-const int field_none = 0, field_grid = 1, field_gaussians = 2;
+const int field_none = 0, field_grid = 1, field_gaussians = 2, field_map = 3, field_series = 4;
 
 struct Layer {
   vec3 sigma_t;    // [1/m]
@@ -16,12 +16,12 @@ struct Layer {
   vec4 shape_frame[3];  // local = xyz . world + w
   vec4 field_frame[3];
   vec3 lo;  // support of the field, local
-  int first;  // of its Gaussians; of its grid values, or the number of its texture
+  int first;  // of its Gaussians, its values of a map or a series; of its grid values, or the number of its texture
   vec3 hi;
   int count;  // of its Gaussians
-  ivec3 size;  // padded samples of a grid
+  ivec3 size;  // padded samples of a grid; padded columns and rows of a map, and its knots; coefficients of a series
   int first_brick;
-  ivec3 bricks;
+  ivec3 bricks;  // of a grid; degree and profile of a map
   int phase;
   float g;  // of Henyey-Greenstein
   int negative;  // some Gaussian is: the sum is clamped at -constant
@@ -38,8 +38,16 @@ struct Gaussian {
 };
 
 layout(std140, binding = AT_LAYERS) uniform Layers { Layer layers[LAYERS > 0 ? LAYERS : 1]; };
-#if GAUSSIANS
+#if SERIES  // maps and series stand in one list with the Gaussians, which are its beginning
+layout(std430, binding = AT_GAUSSIANS) readonly buffer FieldValues { float field_value[]; };
+Gaussian gaussian_at(int i) {
+  int at = 8 * i;
+  return Gaussian(vec3(field_value[at], field_value[at + 1], field_value[at + 2]), field_value[at + 3], field_value[at + 4],
+                  field_value[at + 5], float[2](0, 0));
+}
+#elif GAUSSIANS
 layout(std430, binding = AT_GAUSSIANS) readonly buffer GaussianList { Gaussian gaussians[]; };
+Gaussian gaussian_at(int i) { return gaussians[i]; }
 #endif
 #if GRIDS
 #if TEXTURES
@@ -143,21 +151,98 @@ float gaussian_density(int k, vec3 p) {
   float sum = 0;
   work += uint(layers[k].count);
   for (int i = layers[k].first; i < layers[k].first + layers[k].count; ++i) {
-    vec3 q = gaussians[i].inverse_width * (p - gaussians[i].center);
+    Gaussian g = gaussian_at(i);
+    vec3 q = g.inverse_width * (p - g.center);
     float d2 = dot(q, q);
-    if (d2 <= gaussians[i].limit) sum += gaussians[i].amplitude * exp(-d2);
+    if (d2 <= g.limit) sum += g.amplitude * exp(-d2);
   }
   return layers[k].negative != 0 ? max(sum, -layers[k].constant) : sum;
 }
 #endif
 
-// Density without the constant [-].
-float varied_density(int k, vec3 x) {
+#if SERIES
+const int map_rows = 6, profile_none = 0, profile_layers = 1;
+
+// The factor of the height, by the knots of the map's profile: scene/media/height_profile.h.
+float height_factor(int k, float y) {
+  int at = layers[k].first + map_rows, profile = layers[k].bricks.y;
+  if (profile == profile_none) return 1;
+  if (profile != profile_layers) return y <= field_value[at] ? 1 : exp((field_value[at] - y) / field_value[at + 1]);
+  if (y < field_value[at]) return field_value[at + 1];
+  for (int i = 1; i < layers[k].size.z; ++i, at += 2) {
+    float low = field_value[at], high = field_value[at + 2];
+    if (y < high) return mix(field_value[at + 1], field_value[at + 3], (y - low) / (high - low));
+  }
+  return field_value[at + 1];
+}
+
+// Values of B-splines in a cell: cell_basis of scene/math/bspline.h.
+vec4 cell_basis(int degree, float u) {
+  float w = 1 - u;
+  if (degree == 0) return vec4(1, 0, 0, 0);
+  if (degree == 1) return vec4(u, w, 0, 0);
+  if (degree == 2) return vec4(0.5 * u * u, 0.5 + u * w, 0.5 * w * w, 0);
+  return vec4(u * u * u, 1 + 3 * u * (1 + u * w), 1 + 3 * w * (1 + u * w), w * w * w) / 6;
+}
+
+// A fogmap (scene/media/fogmap.h). First come two rows that lead from local coordinates to cells, then the knots, then the
+// coefficients with a border of zeros.
+float map_density(int k, vec3 p) {
+  int at = layers[k].first, degree = layers[k].bricks.x, columns = layers[k].size.x;
+  vec3 ground = vec3(p.xz, 1);
+  vec2 uv = vec2(dot(vec3(field_value[at], field_value[at + 1], field_value[at + 2]), ground),
+                 dot(vec3(field_value[at + 3], field_value[at + 4], field_value[at + 5]), ground));
+  vec2 cell = floor(uv), last = vec2(layers[k].size.xy - degree);
+  work += 8u;
+  if (any(lessThan(uv, vec2(0))) || any(greaterThanEqual(uv, last))) return 0;
+  vec4 across = cell_basis(degree, uv.x - cell.x), down = cell_basis(degree, uv.y - cell.y);
+  int place = at + map_rows + 2 * layers[k].size.z + (int(cell.y) + degree) * columns + int(cell.x) + degree;
+  float sum = 0;
+  for (int j = 0; j <= degree; ++j)
+    for (int i = 0; i <= degree; ++i) sum += down[j] * across[i] * field_value[place - j * columns - i];
+  return sum > 0 ? sum * height_factor(k, p.y) : 0;
+}
+
+// A Legendre box (scene/media/legendre_box.h). First come factors from local coordinates to [-1, 1], then the coefficients of
+// Legendre polynomials that are 1 at the end, z fastest. Sums by Clenshaw's recurrence along each axis.
+float series_density(int k, vec3 p) {
+  int at = layers[k].first;
+  ivec3 n = layers[k].size;
+  vec3 u = p * vec3(field_value[at], field_value[at + 1], field_value[at + 2]);
+  if (any(greaterThan(abs(u), vec3(1)))) return 0;
+  work += uint(n.x * n.y * n.z);
+  vec2 sum = vec2(0);  // of the order in hand and the one above it
+  for (int x = n.x - 1; x >= 0; --x) {
+    vec2 plane = vec2(0);
+    for (int y = n.y - 1; y >= 0; --y) {
+      vec2 row = vec2(0);
+      int first = at + 3 + (x * n.y + y) * n.z;
+      for (int z = n.z - 1; z >= 0; --z) {
+        float m = float(z);
+        row = vec2(field_value[first + z] + (2 * m + 1) / (m + 1) * u.z * row.x - (m + 1) / (m + 2) * row.y, row.x);
+      }
+      float m = float(y);
+      plane = vec2(row.x + (2 * m + 1) / (m + 1) * u.y * plane.x - (m + 1) / (m + 2) * plane.y, plane.x);
+    }
+    float m = float(x);
+    sum = vec2(plane.x + (2 * m + 1) / (m + 1) * u.x * sum.x - (m + 1) / (m + 2) * sum.y, sum.x);
+  }
+  return max(sum.x, 0);
+}
+#endif
+
+// Density without the constant [-], at local and at world coordinates.
+float local_density(int k, vec3 p) {
 #if GRIDS
-  if (layers[k].field == field_grid) return grid_density(k, to_local(layers[k].field_frame, x));
+  if (layers[k].field == field_grid) return grid_density(k, p);
 #endif
 #if GAUSSIANS
-  if (layers[k].field == field_gaussians) return gaussian_density(k, to_local(layers[k].field_frame, x));
+  if (layers[k].field == field_gaussians) return gaussian_density(k, p);
+#endif
+#if SERIES
+  if (layers[k].field == field_map) return map_density(k, p);
+  if (layers[k].field == field_series) return series_density(k, p);
 #endif
   return 0;
 }
+float varied_density(int k, vec3 x) { return layers[k].field == field_none ? 0 : local_density(k, to_local(layers[k].field_frame, x)); }

@@ -14,6 +14,16 @@ namespace airlight::gpu::ray_marcher {
 
 using airlight::ray_marcher::Layer;
 
+double density_iterations(const Layer& layer) {
+  if (const auto* box = std::get_if<scene::LegendrePointer>(&layer.medium->field))
+    return scene::tensor_size((*box)->shape());
+  if (const auto* fog = std::get_if<scene::FogmapPointer>(&layer.medium->field))
+    return 16 + double(height_breaks((*fog)->profile).size());
+  return layer.gaussians ? double(layer.gaussians->count) : 1;
+}
+
+bool is_series(const Layer& layer) { return layer.varies && !layer.grid && !layer.gaussians; }
+
 MediaOnDevice::MediaOnDevice(Context& context, const std::vector<Layer>& layers, const Point3& middle,
                              GridStorage storage)
     : context_(context), middle_(middle), count_(int(layers.size())), grids_(context, layers, storage) {
@@ -21,14 +31,24 @@ MediaOnDevice::MediaOnDevice(Context& context, const std::vector<Layer>& layers,
     has_grids_ = has_grids_ || layer.grid;
     has_gaussians_ = has_gaussians_ || layer.gaussians;
   }
-  refill(gaussians_, context, "Gaussians", gaussian_data(layers));
+  upload_lists(layers);
   refill(bricks_, context, "maps of empty space", brick_data(layers));
   uploaded_ = layers;
   become(layers, middle);
 }
 
+void MediaOnDevice::upload_lists(const std::vector<Layer>& layers) {
+  series_ = series_data(layers);
+  if (series_.empty())
+    refill(gaussians_, context_, "Gaussians", gaussian_data(layers));
+  else
+    refill(gaussians_, context_, "Gaussians, maps, series", series_);
+}
+
 bool MediaOnDevice::is_like(const std::vector<Layer>& layers) const {
-  return std::equal(layers.begin(), layers.end(), uploaded_.begin(), uploaded_.end(),
+  const bool has_series = std::any_of(layers.begin(), layers.end(), is_series);
+  return has_series == !series_.empty() &&
+         std::equal(layers.begin(), layers.end(), uploaded_.begin(), uploaded_.end(),
                     [](const Layer& a, const Layer& b) {
                       return bool(a.grid) == bool(b.grid) && bool(a.gaussians) == bool(b.gaussians) &&
                              (!a.grid || std::equal(a.grid->size, a.grid->size + 3, b.grid->size));
@@ -47,8 +67,8 @@ void MediaOnDevice::become(const std::vector<Layer>& layers, const Point3& middl
     return !std::equal(layers.begin(), layers.end(), uploaded_.begin(), uploaded_.end(),
                        [&](const Layer& a, const Layer& b) { return part(a) == part(b); });
   };
-  if (differ([](const Layer& layer) { return layer.gaussians; }))
-    refill(gaussians_, context_, "Gaussians", gaussian_data(layers));
+  if (differ([](const Layer& layer) { return layer.gaussians; }) || series_ != series_data(layers))
+    upload_lists(layers);
   if (differ([](const Layer& layer) { return layer.grid ? layer.grid->samples : nullptr; })) {
     grids_.become(layers);
     refill(bricks_, context_, "maps of empty space", brick_data(layers));
@@ -60,7 +80,8 @@ std::map<std::string, std::string> MediaOnDevice::definitions() const {
   return {{"LAYERS", std::to_string(count_)},
           {"GRIDS", has_grids_ ? "1" : "0"},
           {"TEXTURES", std::to_string(grids_.textures())},
-          {"GAUSSIANS", has_gaussians_ ? "1" : "0"}};
+          {"GAUSSIANS", has_gaussians_ ? "1" : "0"},
+          {"SERIES", series_.empty() ? "0" : "1"}};
 }
 
 void MediaOnDevice::bind(LinkedProgram& program) const {
@@ -75,12 +96,6 @@ std::vector<std::string> unknown_media(const std::vector<scene::Medium>& media) 
   std::vector<std::string> reasons;
   if (media.size() > most_layers)
     reasons.push_back(fmt::format("{} media: the shader has room for {}", media.size(), most_layers));
-  for (std::size_t i = 0; i < media.size(); ++i) {
-    const std::string why =
-        scene::unknown_field<scene::Homogeneous, scene::GaussianSum, scene::GridPointer, scene::FittedPointer>(media,
-                                                                                                               i);
-    if (!why.empty()) reasons.push_back(why);
-  }
   return reasons;
 }
 

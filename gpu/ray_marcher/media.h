@@ -23,12 +23,14 @@ class MediaOnDevice {
 
   const Point3& middle() const { return middle_; }
   const GridsOnDevice& grids() const { return grids_; }
-  // LAYERS, GRIDS, TEXTURES and GAUSSIANS, for a program that includes layer.glsl.
+  // LAYERS, GRIDS, TEXTURES, GAUSSIANS and SERIES, for a program that includes layer.glsl.
   std::map<std::string, std::string> definitions() const;
   // Binds uniform block 0, storage blocks 1 to 3 and the textures, sets layer_count.
   void bind(LinkedProgram&) const;
 
  private:
+  void upload_lists(const std::vector<airlight::ray_marcher::Layer>&);
+
   Context& context_;
   Point3 middle_;
   int count_;
@@ -36,10 +38,15 @@ class MediaOnDevice {
   bool has_grids_ = false, has_gaussians_ = false;
   GridsOnDevice grids_;
   std::vector<char> layers_uploaded_;
+  std::vector<float> series_;  // as uploaded; empty: no fogmap, no Legendre box
   std::unique_ptr<Buffer> layers_, gaussians_, bricks_;
 };
 
-// Why the device's media are not these, one line each: fields that layer.glsl does not know, or too many of them.
+// A fogmap or a Legendre box: a field without kernel on the CPU. Iterations of loops that a density of the layer takes.
+bool is_series(const airlight::ray_marcher::Layer&);
+double density_iterations(const airlight::ray_marcher::Layer&);
+
+// Why the device's media are not these, one line each: there are too many.
 std::vector<std::string> unknown_media(const std::vector<scene::Medium>&);
 
 }  // namespace airlight::gpu::ray_marcher

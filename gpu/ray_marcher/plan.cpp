@@ -28,9 +28,9 @@ double iterations_at_once(const airlight::ray_marcher::Plan& plan) {
     // Divided steps (deep_column): 20 / deepest of them on the way into the dark, twice for the halves, and the way
     // back up.
     if (!exact && layer.most_varied * layer.thickest * across / steps > deepest_shadow_step(o))
-      sum += 4 * 20 / deepest_shadow_step(o) * (layer.gaussians ? 3 * double(layer.gaussians->count) : 1);
+      sum += 4 * 20 / deepest_shadow_step(o) * (layer.grid ? 1 : 3 * density_iterations(layer));
     if (!layer.gaussians)
-      sum += steps;
+      sum += steps * density_iterations(layer);
     else if (layer.gaussians->any_negative)
       sum += steps * double(layer.gaussians->count);
     else

@@ -1,7 +1,5 @@
 #include "gpu/ray_marcher/ray_marcher.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "gpu/ray_marcher/plan.h"
@@ -161,18 +159,20 @@ std::vector<std::string> RayMarcher::supports(const Scene& scene, const scene::S
   const airlight::ray_marcher::Options options = airlight::ray_marcher::read_options(settings, 1);
   for (const std::string& reason : unknown_media(scene.media)) reasons.push_back(reason);
   if (!options.simd) reasons.push_back("kernel = scalar is for the CPU: shaders compute in single precision");
-  bool grid = false, negative = false;
+  std::string marched;
   for (const scene::Medium& medium : scene.media)
     scene::match(
         medium.field, [](const scene::Homogeneous&) {},
         [&](const scene::GaussianSum& sum) {
-          for (const scene::Gaussian& g : sum.gaussians) negative = negative || g.amplitude < 0;
+          for (const scene::Gaussian& g : sum.gaussians)
+            if (g.amplitude < 0) marched = "Gaussians with negative amplitudes";
         },
-        [&](const scene::GridPointer&) { grid = true; }, [](const scene::FogmapPointer&) {},
-        [](const scene::LegendrePointer&) {}, [&](const scene::FittedPointer&) { grid = true; });
-  if (options.shadow == airlight::ray_marcher::Shadow::exact && (grid || negative))
-    reasons.push_back(fmt::format("shadow = exact: shaders march the depths of {}",
-                                  grid ? "voxel grids" : "Gaussians with negative amplitudes"));
+        [&](const scene::GridPointer&) { marched = "voxel grids"; },
+        [&](const scene::FogmapPointer&) { marched = "fogmaps"; },
+        [&](const scene::LegendrePointer&) { marched = "Legendre boxes"; },
+        [&](const scene::FittedPointer&) { marched = "voxel grids"; });
+  if (options.shadow == airlight::ray_marcher::Shadow::exact && !marched.empty())
+    reasons.push_back("shadow = exact: shaders march the depths of " + marched);
   return reasons;
 }
 

@@ -31,6 +31,54 @@ std::size_t samples(const airlight::ray_marcher::GridField& grid) {
   return std::size_t(grid.size[0]) * grid.size[1] * grid.size[2];
 }
 
+// Local coordinates of a field without a kernel on the CPU: metres from the middle of its box. Sides of the box may be infinite.
+Point3 middle_of(const Box& box) {
+  Point3 middle;
+  for (int a = 0; a < 3; ++a) {
+    const bool from = std::isfinite(box.lo[a]), to = std::isfinite(box.hi[a]);
+    middle[a] = from && to ? 0.5 * (box.lo[a] + box.hi[a]) : from ? box.lo[a] : to ? box.hi[a] : 0;
+  }
+  return middle;
+}
+float finite(double metres) { return float(std::clamp(metres, -1e18, 1e18)); }
+
+// Two rows from local x and z to cells, from the first with coefficients on; knots; coefficients with a border of `degree` zeros.
+void add_map(const scene::Fogmap& fog, const Point3& middle, std::vector<float>& data) {
+  const double x = middle[0] - fog.x0, z = middle[2] - fog.z0;
+  const scene::IndexRange& range = fog.map.range();
+  const int n = fog.map.degree();
+  for (const double value : {fog.cos_turn / fog.cell, -fog.sin_turn / fog.cell,
+                             (x * fog.cos_turn - z * fog.sin_turn) / fog.cell - range.lo[0], fog.sin_turn / fog.cell,
+                             fog.cos_turn / fog.cell, (x * fog.sin_turn + z * fog.cos_turn) / fog.cell - range.lo[1]})
+    data.push_back(float(value));
+  scene::match(
+      fog.profile, [](const scene::SameAtAllHeights&) {},
+      [&](const scene::Layers& layers) {
+        for (std::size_t i = 0; i < layers.heights.size(); ++i) {
+          data.push_back(float(layers.heights[i] - middle[1]));
+          data.push_back(float(layers.factors[i]));
+        }
+      },
+      [&](const scene::ExponentialFall& fall) {
+        data.push_back(float(fall.base - middle[1]));
+        data.push_back(float(fall.scale_height));
+      });
+  for (int j = -n; j < range.size[1] + n; ++j)
+    for (int i = -n; i < range.size[0] + n; ++i)
+      data.push_back(float(fog.map.coefficient(range.lo[0] + i, range.lo[1] + j)));
+}
+int knots_of(const scene::HeightProfile& profile) { return int(height_breaks(profile).size()); }
+
+// Factors to [-1, 1]; coefficients of polynomials that are 1 at the end.
+void add_series(const scene::LegendreBox& box, std::vector<float>& data) {
+  for (int a = 0; a < 3; ++a) data.push_back(float(2 / box.box().size()[a]));
+  const scene::TensorShape& n = box.shape();
+  for (int i = 0, at = 0; i < n[0]; ++i)
+    for (int j = 0; j < n[1]; ++j)
+      for (int k = 0; k < n[2]; ++k, ++at)
+        data.push_back(float(box.coefficients()[at] * std::sqrt((i + 0.5) * (j + 0.5) * (k + 0.5))));
+}
+
 }  // namespace
 
 Point3 middle_of(const Layers& layers, const Point3& otherwise) {
@@ -52,7 +100,9 @@ Point3 middle_of(const Layers& layers, const Point3& otherwise) {
 
 std::vector<LayerData> layer_data(const Layers& layers, const Point3& middle, bool textures) {
   std::vector<LayerData> data;
-  std::size_t gaussians = 0, values = 0, bricks = 0, grids = 0;
+  std::size_t gaussians = 0, values = 0, bricks = 0, grids = 0, series = 0;
+  for (const Layer& layer : layers)
+    if (layer.gaussians) series += layer.gaussians->count * sizeof(GaussianData) / sizeof(float);
   for (const Layer& layer : layers) {
     LayerData d{};
     d.sigma_t = float3(Vec3(layer.medium->sigma_t));
@@ -76,6 +126,20 @@ std::vector<LayerData> layer_data(const Layers& layers, const Point3& middle, bo
       d.bricks = {grid.bricks[0], grid.bricks[1], grid.bricks[2]};
       values += samples(grid), bricks += grid.samples->free_distance.size(), ++grids;
     };
+    const auto set_series = [&](int field, const auto& add) {
+      const Box box = bounding_box(layer.varied);
+      const Point3 own = middle_of(box);
+      d.field = field;
+      d.field_frame = frame_data({{1, 0, 0, 0, 1, 0, 0, 0, 1}, {-own[0], -own[1], -own[2]}}, middle);
+      for (std::size_t a = 0; a < 3; ++a) {
+        d.lo[a] = finite(box.lo[Eigen::Index(a)] - own[Eigen::Index(a)]);
+        d.hi[a] = finite(box.hi[Eigen::Index(a)] - own[Eigen::Index(a)]);
+      }
+      d.first = int(series);
+      std::vector<float> list;
+      add(own, list);
+      series += list.size();
+    };
     scene::match(
         layer.medium->field, [](const scene::Homogeneous&) {},
         [&](const scene::GaussianSum&) {
@@ -89,8 +153,17 @@ std::vector<LayerData> layer_data(const Layers& layers, const Point3& middle, bo
           gaussians += field.count;
         },
         [&](const scene::GridPointer&) { set_grid(); },
-        [](const scene::FogmapPointer&) { throw Error("ray_marcher_gpu: a fogmap, which supports() refuses"); },
-        [](const scene::LegendrePointer&) { throw Error("ray_marcher_gpu: a Legendre box, which supports() refuses"); },
+        [&](const scene::FogmapPointer& fog) {
+          set_series(3, [&](const Point3& own, std::vector<float>& list) { add_map(*fog, own, list); });
+          const int n = fog->map.degree();
+          const scene::IndexRange& range = fog->map.range();
+          d.size = {range.size[0] + 2 * n, range.size[1] + 2 * n, knots_of(fog->profile)};
+          d.bricks = {n, int(fog->profile.index()), 0};
+        },
+        [&](const scene::LegendrePointer& box) {
+          set_series(4, [&](const Point3&, std::vector<float>& list) { add_series(*box, list); });
+          d.size = {box->shape()[0], box->shape()[1], box->shape()[2]};
+        },
         [&](const scene::FittedPointer&) { set_grid(); });
     data.push_back(d);
   }
@@ -109,6 +182,20 @@ std::vector<GaussianData> gaussian_data(const Layers& layers) {
     }
   }
   return data;
+}
+
+std::vector<float> series_data(const Layers& layers) {
+  std::vector<float> list;
+  for (const Layer& layer : layers) {
+    if (const auto* fog = std::get_if<scene::FogmapPointer>(&layer.medium->field))
+      add_map(**fog, middle_of(bounding_box(layer.varied)), list);
+    if (const auto* box = std::get_if<scene::LegendrePointer>(&layer.medium->field)) add_series(**box, list);
+  }
+  if (list.empty()) return list;
+  const std::vector<GaussianData> gaussians = gaussian_data(layers);
+  const auto* first = reinterpret_cast<const float*>(gaussians.data());
+  list.insert(list.begin(), first, first + gaussians.size() * sizeof(GaussianData) / sizeof(float));
+  return list;
 }
 
 std::vector<float> brick_data(const Layers& layers) {

@@ -19,7 +19,7 @@ struct LayerData {
   Float3 sigma_t;
   float constant;
   Float3 albedo;
-  int field;  // 0 none, 1 grid, 2 Gaussians
+  int field;  // 0 none, 1 grid, 2 Gaussians, 3 fogmap, 4 Legendre box
   Float3 half_size;
   int shape;
   std::array<Float4, 3> shape_frame, field_frame;
@@ -66,6 +66,8 @@ Point3 middle_of(const Layers&, const Point3& otherwise);
 std::vector<LayerData> layer_data(const Layers&, const Point3& middle, bool textures);
 // Values of all layers, one list after the other.
 std::vector<GaussianData> gaussian_data(const Layers&);
+// The Gaussians of all layers and, behind them, what layer.glsl reads of fogmaps and Legendre boxes. Empty without the latter.
+std::vector<float> series_data(const Layers&);
 std::vector<float> brick_data(const Layers&);
 std::vector<float> grid_data(const Layers&);
 // Slice z of one grid, x fastest: padded samples.

@@ -50,7 +50,8 @@ Definitions shared_definitions() {
                                                   {"TRANSMITTANCE_LAYER", at::transmittance_layer},
                                                   {"AMBIENT_LAYER", at::ambient_layer},
                                                   {"SURFACE_LAYER", at::surface_layer},
-                                                  {"MEAN_LAYER", at::mean_layer}};
+                                                  {"MEAN_LAYER", at::mean_layer},
+                                                  {"SEEN", at::seen}};
   for (const auto& [name, number] : bindings) definitions[std::string("AT_") + name] = std::to_string(number);
   return definitions;
 }

@@ -36,6 +36,7 @@ enum Binding {
   surface_layer = 2,
   mean_layer = 3,
   airlight_layer = 4,
+  seen = 5,
 };
 }  // namespace at
 

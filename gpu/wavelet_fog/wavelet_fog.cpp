@@ -5,11 +5,14 @@
 #include <algorithm>
 
 #include "gpu/film_layers.h"
+#include "gpu/raster/backdrops.h"
 #include "gpu/wavelet_fog/sun_scattering.h"
 #include "gpu/wavelet_fog/surface_light.h"
+#include "methods/wavelet_fog/compression.h"
 #include "methods/wavelet_fog/sun_scattering.h"
 #include "methods/wavelet_fog/wavelet_fog.h"
 #include "scene/base/error.h"
+#include "scene/base/stopwatch.h"
 #include "scene/single_precision.h"
 
 namespace airlight::gpu::wavelet_fog {
@@ -33,15 +36,18 @@ class PreparedWaveletFogGpu final : public scene::Prepared {
   bool ambient() const { return scene_->ambient_in_scatter.maxCoeff() > 0 && !fogs_.empty(); }
   bool polar() const { return options_.variant == Options::Variant::polar && !fogs_.empty(); }
   void find_depths(const View&, const Buffer* distances, const Buffer& depths, const Buffer& counters) const;
-  void compose(const View&, const Buffer& depths, const Buffer& lit) const;
+  void find_ends(const View&, const Buffer*& distances, const Buffer*& primitives, const Buffer*& seen) const;
+  void compose(const View&, const Buffer& depths, const Buffer& lit, const Buffer* seen) const;
   scene::Rendering draw(const View&, const Execution&, std::vector<unsigned>& counters) const;
   std::vector<unsigned> finish(scene::Rendering&) const;
 
-  std::shared_ptr<const Scene> scene_;
+  std::shared_ptr<const Scene> scene_;  // with maps as `keep` and `degree` ask for
+  std::vector<airlight::wavelet_fog::CompressionReport> compression_;
   Options options_;
   Context& context_;
   std::vector<std::unique_ptr<FogOnDevice>> fogs_;
-  std::unique_ptr<FirstHits> first_hits_;  // null: rays are infinite
+  std::unique_ptr<FirstHits> first_hits_;  // null: no surface and no ball ends rays
+  std::unique_ptr<Backdrops> backdrops_;   // null: there are none
   std::unique_ptr<SurfaceLight> surfaces_;
   std::unique_ptr<SunOnDevice> sun_;  // null: no sun is asked for, or none shines
   Program* composition_ = nullptr;
@@ -51,11 +57,14 @@ class PreparedWaveletFogGpu final : public scene::Prepared {
 
 PreparedWaveletFogGpu::PreparedWaveletFogGpu(std::shared_ptr<const Scene> scene, const Options& options,
                                              FirstHits::Way way)
-    : scene_(std::move(scene)), options_(options), context_(Context::get()), frame_(context_) {
+    : options_(options), context_(Context::get()), frame_(context_) {
   const Use use(context_);
   StageTimer timer(context_);
+  if (options_.keep < 1) timer.begin("compression");
+  scene_ = with_maps_changed(std::move(scene), options_, &compression_);
   timer.begin("upload");
   if (something_ends_rays(*scene_)) first_hits_ = std::make_unique<FirstHits>(context_, *scene_, true, way);
+  if (!scene_->backdrops.empty()) backdrops_ = std::make_unique<Backdrops>(context_, *scene_);
   surfaces_ = std::make_unique<SurfaceLight>(context_, *scene_, first_hits_.get());
   for (const scene::Medium& medium : scene_->media)
     if (extinguishes(medium))
@@ -89,16 +98,22 @@ std::vector<scene::Stage> PreparedWaveletFogGpu::stages() const {
           {"composition", true, "layers of the film"}};
 }
 
-// Lamps and their balls may move, maps become others of the same size.
-std::optional<std::vector<scene::StageTime>> PreparedWaveletFogGpu::next(std::shared_ptr<const Scene> scene,
+// Lamps and their balls may move, maps become others of the same size. Backdrops belong to a camera.
+std::optional<std::vector<scene::StageTime>> PreparedWaveletFogGpu::next(std::shared_ptr<const Scene> given,
                                                                          const Execution&) {
+  if (!airlight::wavelet_fog::unsupported(*given, options_).empty()) return std::nullopt;
+  std::vector<airlight::wavelet_fog::CompressionReport> compression;
+  scene::Stopwatch watch;
+  const std::shared_ptr<const Scene> scene = with_maps_changed(std::move(given), options_, &compression);
+  std::vector<scene::StageTime> times;
+  if (options_.keep < 1) times.push_back({"compression", watch.lap()});
   const auto same_light = [](const scene::Light& a, const scene::Light& b) {
     const auto *x = std::get_if<scene::EnvironmentLight>(&a), *y = std::get_if<scene::EnvironmentLight>(&b);
     if (!x || !y) return a.index() == b.index();
     return x->map == y->map && (x->scale == y->scale).all() && x->to_map == y->to_map && x->sh.empty() && y->sh.empty();
   };
   if (!same_surfaces(*scene, *scene_) || scene->lights.size() != scene_->lights.size() ||
-      scene->media.size() != scene_->media.size() || !airlight::wavelet_fog::unsupported(*scene, options_).empty() ||
+      scene->media.size() != scene_->media.size() || backdrops_ || !scene->backdrops.empty() ||
       !std::equal(scene->lights.begin(), scene->lights.end(), scene_->lights.begin(), same_light) ||
       lamps_light_surfaces(*scene) != lamps_light_surfaces(*scene_) ||
       (options_.sun &&
@@ -115,8 +130,9 @@ std::optional<std::vector<scene::StageTime>> PreparedWaveletFogGpu::next(std::sh
   if (first_hits_ && !first_hits_->move_balls(*scene)) return std::nullopt;
   for (std::size_t i = 0; i < media.size(); ++i) fogs_[i]->become(*media[i]);
   if (sun_) sun_->write();
-  scene_ = std::move(scene);
-  return std::vector<scene::StageTime>{};
+  scene_ = scene;
+  compression_ = std::move(compression);
+  return times;
 }
 
 void PreparedWaveletFogGpu::find_depths(const View& view, const Buffer* distances, const Buffer& depths,
@@ -131,7 +147,24 @@ void PreparedWaveletFogGpu::find_depths(const View& view, const Buffer* distance
   for (const auto& fog : fogs_) fog->add_depths(view, distances, depths, counters, fog == fogs_.front(), counts);
 }
 
-void PreparedWaveletFogGpu::compose(const View& view, const Buffer& depths, const Buffer& lit) const {
+// Distances of what ends camera rays and its primitives; what backdrops send. Null: nothing does, there are none.
+void PreparedWaveletFogGpu::find_ends(const View& view, const Buffer*& distances, const Buffer*& primitives,
+                                      const Buffer*& seen) const {
+  if (!first_hits_ && !backdrops_) return;
+  const std::size_t pixels = std::size_t(view.width) * view.height;
+  distances = &frame_.buffers.get("distances", 4 * pixels);
+  frame_.timer.begin("distances");
+  if (first_hits_) {
+    primitives = &frame_.buffers.get("primitives", 4 * pixels);
+    first_hits_->find(view, *distances, primitives);
+  }
+  if (!backdrops_) return;
+  seen = &frame_.buffers.get("seen", 12 * pixels);
+  backdrops_->find(view, *distances, bool(first_hits_), *seen, primitives);
+}
+
+void PreparedWaveletFogGpu::compose(const View& view, const Buffer& depths, const Buffer& lit,
+                                    const Buffer* seen) const {
   const std::size_t pixels = std::size_t(view.width) * view.height;
   Program& p = *composition_;
   bind_film_layers(frame_, pixels, p,
@@ -139,9 +172,11 @@ void PreparedWaveletFogGpu::compose(const View& view, const Buffer& depths, cons
                    {sun_ != nullptr, ambient() ? std::optional(scene_->ambient_in_scatter) : std::nullopt});
   depths.bind(at::depths);
   lit.bind(at::lit);
+  (seen ? *seen : depths).bind(at::seen);
   p.set("pixels", int(pixels));
   p.set("has_fog", !fogs_.empty());
   p.set("has_lit", surfaces_->shines());
+  p.set("has_seen", seen != nullptr);
   p.dispatch(int(pixels));
 }
 
@@ -149,6 +184,10 @@ void PreparedWaveletFogGpu::compose(const View& view, const Buffer& depths, cons
 std::vector<unsigned> PreparedWaveletFogGpu::finish(scene::Rendering& result) const {
   frame_.finish(result);
   result.counters["rays"] = double(result.film.pixels());
+  for (const airlight::wavelet_fog::CompressionReport& report : compression_) {
+    result.counters["kept"] += double(report.kept);
+    result.counters["map_error_ppm"] = std::max(result.counters["map_error_ppm"], 1e6 * report.error);
+  }
   const std::vector<unsigned> words = frame_.download.values<unsigned>("counters");
   if (words.empty()) return words;
   result.counters["cells"] = words[0] + 4294967296.0 * words[1];
@@ -184,19 +223,14 @@ scene::Rendering PreparedWaveletFogGpu::draw(const View& view, const Execution& 
   if (frame_.download.wants_any()) counters.clear();
   const Buffer& depths = frame_.buffers.get("depths", 16 * pixels);
   const Buffer& lit = frame_.buffers.get("lit", surfaces_->shines() ? sizeof(LitData) * pixels : sizeof(LitData));
-  const Buffer *distances = nullptr, *primitives = nullptr;
+  const Buffer *distances = nullptr, *primitives = nullptr, *seen = nullptr;
   if (std::any_of(fogs_.begin(), fogs_.end(), [](const auto& fog) { return fog->stale(); })) {
     frame_.timer.begin("maps");
     for (const auto& fog : fogs_)
       if (fog->stale()) fog->refresh();
     if (sun_) sun_->refresh();
   }
-  if (first_hits_) {
-    distances = &frame_.buffers.get("distances", 4 * pixels);
-    primitives = &frame_.buffers.get("primitives", 4 * pixels);
-    frame_.timer.begin("distances");
-    first_hits_->find(view, *distances, primitives);
-  }
+  find_ends(view, distances, primitives, seen);
   find_depths(view, distances, depths, counters);
   if (sun_) {
     frame_.timer.begin("airlight");
@@ -213,7 +247,7 @@ scene::Rendering PreparedWaveletFogGpu::draw(const View& view, const Execution& 
     });
   }
   frame_.timer.begin("composition");
-  compose(view, depths, lit);
+  compose(view, depths, lit, seen);
   frame_.download.add_values("counters", counters, 4 * counter_words);
   words = finish(result);
   return result;
@@ -233,13 +267,10 @@ std::vector<scene::SettingSpec> WaveletFog::settings() const {
 
 std::vector<std::string> WaveletFog::supports(const Scene& scene, const scene::Settings& settings) const {
   std::vector<std::string> reasons = airlight::wavelet_fog::WaveletFog().supports(scene, settings);
-  refuse_backdrops(scene, reasons);
   for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
   const Options options = airlight::wavelet_fog::read_options(settings);
   if (options.variant == Options::Variant::pre)
     reasons.push_back("variant = pre is for the CPU: expected paper or tele, which have the same sum");
-  if (options.keep < 1) reasons.push_back("keep is for the CPU: no shader compresses maps");
-  if (options.degree >= 0) reasons.push_back("degree is for the CPU: shaders take the scene's");
   if (options.table > 0) reasons.push_back("table is for the CPU: shaders integrate exactly");
   return reasons;
 }

@@ -40,7 +40,6 @@ Answer answer(const std::string& name, const std::shared_ptr<scene::Scene>& scen
   Given given;
   if (name == "path_tracer") given = {{"samples", "256"}};
   if (name.starts_with("ray_marcher")) given = {{"steps", "64"}};
-  if (name == "fogshop_gpu") given = {{"light_distance_side", "32"}};  // nothing depends on it
   const scene::Settings settings(renderer.settings(), given);
   if (const auto reasons = renderer.supports(*scene, settings); !reasons.empty()) return {{}, reasons.front()};
   try {

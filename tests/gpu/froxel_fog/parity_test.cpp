@@ -229,9 +229,7 @@ TEST_CASE("froxel fog: what the GPU does not do is said; a render can be stopped
   REQUIRE(reasons(*scene, {{"far", "1e7"}}).size() == 1);
   CHECK_THAT(reasons(*scene, {{"far", "1e7"}})[0], Catch::Contains("single precision"));
   CHECK(reasons(*scene, {{"near", "5"}, {"far", "4"}}).size() == 1);
-  const auto cloud = test::scene_named("legendre_cloud", 8, 6);
-  REQUIRE(reasons(*cloud, {}).size() == 1);
-  CHECK_THAT(reasons(*cloud, {})[0], Catch::Contains("is legendre, expected"));
+  CHECK(reasons(*test::scene_named("legendre_cloud", 8, 6), {}).empty());
   if (!gpu::test::device()) return;
   const auto prepared = fog.prepare(scene, {fog.settings(), {}}, {1, {}});
   CHECK_THROWS_AS(prepared->render(view_of(*scene), {1, [](double) { return false; }}), scene::Interrupted);

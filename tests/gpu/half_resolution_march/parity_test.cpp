@@ -39,6 +39,31 @@ void agree(const std::string& name, const std::shared_ptr<const scene::Scene>& s
   }
 }
 
+// How far a picture of the CPU moves if places move as single precision may move them: the sum over three axes of the greatest change
+// of any pixel and layer. A place on a ray is origin + t direction. Rounding of t, of the direction, of the product and of the sum
+// each move it by at most 2^-24 of t, which is at most twice the camera's distance from the middle.
+double moved_by_rounding(const scene::Scene& scene, const Given& given) {
+  const auto picture = [&](const Vec3& shift) {
+    auto other = std::make_shared<scene::Scene>(scene);
+    other->camera.position += shift;
+    finish(*other);
+    return test::render(processor, other, given).film;
+  };
+  const scene::Film still = picture(Vec3::Zero());
+  const double place = 4 * 0x1p-24 * 2 * scene.camera.position.norm();
+  double sum = 0;
+  for (const Vec3& axis : {scene.camera.right, scene.camera.up, scene.camera.forward}) {
+    double most = 0;
+    for (const double side : {-place, place}) {
+      const scene::Film there = picture(side * axis);
+      for (const auto& [layer, values] : still.layers)
+        most = std::max(most, gpu::test::quantile(still, there, layer, 1));
+    }
+    sum += most;
+  }
+  return sum;
+}
+
 std::shared_ptr<scene::Scene> sized(const scene::Scene& scene, int width, int height) {
   auto other = std::make_shared<scene::Scene>(scene);
   other->camera = ray_marcher::small_view().camera;
@@ -75,9 +100,12 @@ DEVICE_TEST_CASE("half-resolution march: every setting on the GPU is that of the
       all.insert({"steps", "8"});
       std::string text = name;
       for (const auto& [key, value] : given) text += " " + key + "=" + value;
-      // Measured: 3.2e-6, 1.8e-5; 2.0e-5, 6.9e-5 in the plume, whose smoke is fine.
+      // Measured: 3.2e-6, 1.8e-5; 2.0e-5 and 6.9e-5 (2.4e-4 on an H200) in the plume. A voxel there is 5e4 roundings of a
+      // place wide, so that the worst pixel may move by what its places may.
       const bool fine = std::string(name) == "plume_sun";
-      agree(text, scene, little(all), fine ? gpu::test::Bounds{6e-5, 2.1e-4} : gpu::test::Bounds{1e-5, 5.4e-5});
+      agree(text, scene, little(all),
+            fine ? gpu::test::Bounds{6e-5, 5.4e-5 + moved_by_rounding(*scene, little(all))}
+                 : gpu::test::Bounds{1e-5, 5.4e-5});
     }
   }
 }

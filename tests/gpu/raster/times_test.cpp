@@ -4,7 +4,7 @@
 #include <chrono>
 
 #include "gpu/fogshop/fogshop.h"
-#include "gpu/raster/light_distances.h"
+#include "gpu/raster/first_hits.h"
 #include "gpu/timer.h"
 #include "methods/fogshop/surface_pass.h"
 #include "tests/gpu/device.h"

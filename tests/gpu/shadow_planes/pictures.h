@@ -26,7 +26,7 @@ inline std::shared_ptr<scene::Scene> scene_of(const std::string& file, int width
 // double precision, so few nodes lie elsewhere.
 inline void compare(const std::shared_ptr<const scene::Scene>& scene, const Pairs& given, double worst = 1e-5,
                     double own = 2.5e-6, bool lit = true) {
-  const scene::Film a = render(shadow_planes::ShadowPlanes(), scene, given).film;
+  const scene::Film a = render(airlight::shadow_planes::ShadowPlanes(), scene, given).film;
   // The device's rule: 16 nodes are good to single precision.
   const scene::Film b = render(gpu::shadow_planes::ShadowPlanes(), scene, given).film;
   agree(fmt::format("{} {}", scene->name, fmt::join(given, " ")), a, b, {own, worst},

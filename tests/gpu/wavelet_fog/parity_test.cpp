@@ -65,6 +65,28 @@ DEVICE_TEST_CASE("wavelet fog: the polar table on the GPU begins at the map's ri
   }
 }
 
+// The host compresses and converts maps, before they go up.
+DEVICE_TEST_CASE("wavelet fog: changed maps on the GPU are those of the CPU", "[gpu][wavelet_fog]") {
+  const auto scene = scene_of(patches(2, 64, 47, 0.8, 7, profiles[1]), 0.2, views[2].first, views[2].second);
+  for (const Given& given :
+       std::vector<Given>{{{"keep", "0.05"}},
+                          {{"degree", "0"}},
+                          {{"degree", "1"}, {"keep", "0.2"}, {"variant", "tele"}, {"mu", "0.4"}}}) {
+    compare(scene, given, 1e-5);
+    const std::vector<float> clear = render(wavelet_fog::WaveletFog(), scene, given).film.layer("transmittance");
+    CHECK(*std::min_element(clear.begin(), clear.end()) < 0.5);
+    CHECK(render(gpu::wavelet_fog::WaveletFog(), scene, given).counters["map_error_ppm"] ==
+          render(wavelet_fog::WaveletFog(), scene, given).counters["map_error_ppm"]);
+    // A next frame with another map is the frame made anew.
+    const gpu::wavelet_fog::WaveletFog method;
+    const auto frames = method.prepare(scene, {method.settings(), given}, {1, {}});
+    const auto other = scene_of(patches(2, 64, 47, 0.8, 8, profiles[1]), 0.2, views[2].first, views[2].second);
+    REQUIRE(frames->next(other, {1, {}}));
+    CHECK(frames->render(view_of(*other), {1, {}}).film.layers ==
+          method.prepare(other, {method.settings(), given}, {1, {}})->render(view_of(*other), {1, {}}).film.layers);
+  }
+}
+
 DEVICE_TEST_CASE("wavelet fog: surfaces, lamps and skies on the GPU are those of the CPU", "[gpu][wavelet_fog]") {
   auto valley = airlight::test::scene_named("wavelet_fog/valley", 96, 72);
   compare(valley, {}, 1.7e-6);

@@ -9,6 +9,7 @@
 
 #include "gpu/wavelet_fog/wavelet_fog.h"
 #include "methods/wavelet_fog/wavelet_fog.h"
+#include "scene/media/fogmap.h"
 #include "scene/media/spline_map.h"
 #include "tests/gpu/device.h"
 #include "tests/gpu/p99.h"
@@ -65,7 +66,7 @@ inline void compare(const scene::Scene& scene, const Given& given, const scene::
 inline void compare(const std::shared_ptr<const scene::Scene>& scene, const Given& given, double bound) {
   Given of_both = given;
   of_both.erase("first_hits");
-  const scene::Film a = render(wavelet_fog::WaveletFog(), scene, of_both).film;
+  const scene::Film a = render(airlight::wavelet_fog::WaveletFog(), scene, of_both).film;
   compare(*scene, given, a, render(gpu::wavelet_fog::WaveletFog(), scene, given).film, bound);
 }
 
