@@ -119,7 +119,8 @@ std::vector<Experiment> read_and_check(const ExperimentOptions& options, const F
     try {
       RunOptions check{folders, resume, options.threads, false};
       // Trials of all experiments would take a third of the run's time, and the run itself reports the same errors.
-      check.trials = !options.in_tests && !options.names.empty();
+      // Parts of an experiment would each try all of it.
+      check.trials = !options.in_tests && !options.names.empty() && options.rows.empty() && options.gathered.empty();
       check_experiment(e, check);
     } catch (const Error& error) {
       if (error.exit_code() != 3) throw;  // what this machine lacks takes nothing from the others: the run tells

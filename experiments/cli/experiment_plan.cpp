@@ -42,7 +42,7 @@ int plan(const PlanOptions& options) {
     throw Error("--slurm, --parallel and --json: expected one of them");
   const Folders folders{project_root(options.root), {}, options.cache};
   const Schedule made =
-      schedule(read(options, folders), folders, {options.tasks, options.least, options.without_times});
+      schedule(read(options, folders), folders, {options.tasks, options.least, options.threads, options.without_times});
   std::string made_by = "airlight experiment plan";
   for (const std::string& name : options.names) made_by += " " + name;
   made_by += fmt::format(" --profile {} --tasks {}", options.profile, options.tasks);

@@ -8,6 +8,7 @@
 #include <map>
 #include <numeric>
 
+#include "experiments/application/json.h"
 #include "experiments/application/json_value.h"
 #include "experiments/driver/agreement.h"
 #include "experiments/driver/committed_references.h"
@@ -60,6 +61,13 @@ RowSeconds row_seconds(const Experiment& e, const std::vector<Row>& recorded, do
   const double scale = sum(rows.timed) > 0 ? total / sum(rows.timed) : 0;
   for (std::size_t i = 0; i < rows.once.size(); ++i) rows.once[i] *= scale, rows.timed[i] *= scale;
   return rows;
+}
+
+// Threads that the record's run had, over those of a task.
+double fewer_threads(const std::filesystem::path& file, int threads) {
+  const nlohmann::json record = read_json(file.string());
+  const int asked = record.at("timing").at("threads"), all = record.at("machine").at("threads");
+  return std::max(1.0, double(asked > 0 ? asked : all) / threads);
 }
 
 // "1,4-6"
@@ -149,7 +157,8 @@ Schedule schedule(const std::vector<Experiment>& experiments, const Folders& fol
       journals[e.id].push_back(journal);
       continue;
     }
-    for (std::size_t k = 0; k < seconds.once.size(); ++k) jobs.push_back({seconds.once[k], e.id, int(k) + 1});
+    const double slower = recorded ? fewer_threads(record, options.threads) : 1;
+    for (std::size_t k = 0; k < seconds.once.size(); ++k) jobs.push_back({slower * seconds.once[k], e.id, int(k) + 1});
   }
 
   const auto seconds_of = [](const std::vector<Job>& list) {

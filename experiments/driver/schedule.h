@@ -38,6 +38,7 @@ struct Schedule {
 struct ScheduleOptions {
   int tasks = 1;
   double least = 60;           // [s] of a task
+  int threads = 1;             // of a task; those whose work is not timed take as much longer as the records had more
   bool without_times = false;  // else rows that are timed are computed in one task for each experiment
 };
 
