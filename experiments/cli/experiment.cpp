@@ -11,13 +11,12 @@
 #include "experiments/cli/command_line.h"
 #include "experiments/cli/commands.h"
 #include "experiments/cli/experiment_plan.h"
+#include "experiments/cli/experiment_runs.h"
 #include "experiments/driver/agreement.h"
 #include "experiments/driver/committed_references.h"
 #include "experiments/driver/expected.h"
 #include "experiments/driver/junit.h"
-#include "experiments/driver/kind.h"
 #include "experiments/driver/margins.h"
-#include "experiments/driver/parts.h"
 #include "experiments/driver/plots.h"
 #include "experiments/driver/run.h"
 #include "experiments/driver/run_progress.h"
@@ -27,23 +26,6 @@
 #include "scene/base/error.h"
 
 namespace airlight::experiments::cli {
-namespace {
-
-struct ExperimentOptions {
-  std::string root, profile = "quick", junit, margins_csv;
-  std::string results, cache;  // folders; empty: results and results/cache below root
-  std::vector<std::string> names;
-  bool resume = false;
-  bool gates_only = false;         // experiments without gates are left out
-  bool in_tests = false;           // experiments without in_tests = true are left out
-  bool margins = false;            // how far each gate is from failing
-  std::string rows, journal;       // of a part: "I/N" or "3,5-9", and the folder of its rows and pictures
-  bool without_times = false;      // its rows keep no time
-  std::string gathered;            // an experiment
-  std::vector<std::string> parts;  // folders of parts that are gathered
-  bool fresh_references = false;   // first makes all committed references of these experiments anew
-  int threads = 0;
-};
 
 void check_profile(const ExperimentOptions& options) {
   if (options.profile != "quick" && options.profile != "paper")
@@ -60,36 +42,17 @@ Folders folders_of(const ExperimentOptions& options) {
   return {project_root(options.root), options.journal.empty() ? options.results : options.journal, options.cache};
 }
 
-// "I/N", I from 1 to N, or row numbers "3,5-9". Throws Error for anything else.
-RowShare share_of(const std::string& text) {
-  const Error fault(fmt::format("--rows '{}': expected I/N with I from 1 to N, e.g. 2/8, or rows such as 3,5-9", text));
-  RowShare share;
-  int end = 0;
-  if (std::sscanf(text.c_str(), "%6d/%6d%n", &share.part, &share.parts, &end) == 2) {
-    if (end != int(text.size()) || share.part < 1 || share.part > share.parts) throw Error(fault);
-    return share;
-  }
-  const char* at = text.c_str();
-  do {
-    int first = 0, last = 0, length = 0;
-    if (std::sscanf(at, "%6d%n", &first, &length) != 1) throw Error(fault);
-    at += length;
-    last = first;
-    if (*at == '-') {
-      if (std::sscanf(at, "-%6d%n", &last, &length) != 1) throw Error(fault);
-      at += length;
-    }
-    if (first < 1 || last < first) throw Error(fault);
-    for (int number = first; number <= last; ++number) share.numbers.insert(number);
-  } while (*at++ == ',');
-  if (at[-1] != 0) throw Error(fault);
-  return share;
-}
-
-// The path as a user would type it.
 std::string shown(const Folders& folders, const std::string& name) {
   return ((folders.default_results() ? "results" : folders.results) / name).string();
 }
+
+int name_failures(const std::vector<GateResult>& gates) {
+  for (const GateResult& gate : gates)
+    if (!gate.passed && !gate.skipped) say("gate failed: " + gate.name);
+  return count(gates).failed ? 1 : 0;
+}
+
+namespace {
 
 // Tests judge errors: each picture is rendered once, without timed runs, unless a gate judges a time.
 void leave_out_times(Experiment& e) {
@@ -98,7 +61,8 @@ void leave_out_times(Experiment& e) {
   e.timing.budget = 0;
 }
 
-// All of them, before the first is computed. Only those with gates where these are all that is asked for.
+}  // namespace
+
 std::vector<Experiment> read_and_check(const ExperimentOptions& options, const Folders& folders, bool resume) {
   check_writable(folders.results, "--results names another folder");
   check_writable(folders.cache, "--cache names another folder");
@@ -128,6 +92,8 @@ std::vector<Experiment> read_and_check(const ExperimentOptions& options, const F
   }
   return experiments;
 }
+
+namespace {
 
 void make_references(const std::vector<Experiment>& experiments, int threads) {
   const std::vector<CommittedReference> references = committed_references(experiments);
@@ -184,13 +150,6 @@ class Agreements {
   std::vector<std::string> differ_;
 };
 
-// 1 if a gate failed, 0 if none did.
-int name_failures(const std::vector<GateResult>& gates) {
-  for (const GateResult& gate : gates)
-    if (!gate.passed && !gate.skipped) say("gate failed: " + gate.name);
-  return count(gates).failed ? 1 : 0;
-}
-
 int list_experiments(const ExperimentOptions& options) {
   check_profile(options);
   const auto root = project_root(options.root);
@@ -204,53 +163,6 @@ int list_experiments(const ExperimentOptions& options) {
   }
   fmt::print("{}", lines);
   return 0;
-}
-
-// Some rows of one experiment, into a journal of its own that `gather` reads. Goes on with a journal that is there.
-int run_part(const ExperimentOptions& options) {
-  check_profile(options);
-  if (options.rows.empty() || options.journal.empty())
-    throw Error("--rows and --journal FOLDER belong together: one of them is missing");
-  if (!options.results.empty() || options.fresh_references)
-    throw Error("--rows: --results and --fresh-references are not for parts of an experiment");
-  const RowShare share = share_of(options.rows);
-  if (options.names.size() != 1) throw Error("--rows: expected one experiment, group/name");
-  const Folders folders = folders_of(options);
-  catch_end_of_rows();
-  std::vector<Experiment> experiments = read_and_check(options, folders, true);
-  if (experiments.size() != 1)
-    throw Error(fmt::format("--rows: expected one experiment, found {}", experiments.size()));
-  if (options.without_times && experiments.front().kind->times_rows()) experiments.front().timing.budget = 0;
-  RunProgress progress(planned_work(experiments, folders.root / "results"));
-  progress.begin(0);
-  RunOptions run{folders, true, options.threads, true, true, &progress, false};
-  run.share = share;
-  run.without_times = options.without_times && experiments.front().kind->times_rows();
-  const Outcome outcome = run_experiment(std::move(experiments.front()), run);
-  progress.end();
-  fmt::print("  {} rows of part {}: {}\n", outcome.rows.size(), options.rows,
-             journal_file(folders, outcome.experiment).string());
-  return 0;
-}
-
-// Tables of one experiment from parts that were computed anywhere with this program.
-int gather(const ExperimentOptions& options) {
-  check_profile(options);
-  require(options.gathered, "NAME");
-  if (options.parts.empty()) throw Error("FOLDER is missing; see --help");
-  const Folders folders = folders_of(options);
-  std::vector<Experiment> experiments = read_and_check(options, folders, true);
-  if (experiments.size() != 1)
-    throw Error(fmt::format("gather: expected one experiment, found {}", experiments.size()));
-  const Experiment& e = experiments.front();
-  take_over_parts(folders, e, options.parts);
-  RunOptions run{folders, true, options.threads, false, true};
-  run.gather = true;
-  const Outcome outcome = run_experiment(e, run);
-  if (!outcome.without_times.empty()) fmt::print("{}\n", outcome.without_times);
-  fmt::print("{} rows of {} folders, {}: {}/table.md\n", outcome.rows.size(), options.parts.size(),
-             gates_text(outcome.gates), shown(folders, results_name(e.id, e.profile)));
-  return name_failures(outcome.gates);
 }
 
 // All files, scenes and settings are checked before anything is computed; exit code 1 names gates that failed.
