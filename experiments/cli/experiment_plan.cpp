@@ -30,8 +30,6 @@ std::vector<Experiment> read(const PlanOptions& options, const Folders& folders)
   std::vector<Experiment> experiments;
   for (const std::string& id : choose_experiments(folders.root, options.names)) {
     experiments.push_back(read_experiment(folders, id, options.profile));
-    for (const std::string& name : experiments.back().sequences)
-      make_sequence(folders, name, options.profile, options.threads);
   }
   return experiments;
 }
@@ -64,6 +62,7 @@ int make_reference(const PlanOptions& options) {
   const Folders folders{project_root(options.root), {}, options.cache};
   const std::vector<Experiment> experiments = read(options, folders);
   const Experiment& e = experiments.front();
+  for (const std::string& name : e.sequences) make_sequence(folders, name, options.profile, options.threads);
   if (experiments.size() != 1) throw Error(fmt::format("expected one experiment, found {}", experiments.size()));
   for (const SceneCase& c : e.scenes) {
     if (c.name != options.scene) continue;

@@ -22,6 +22,7 @@ struct SimulateOptions {
   std::string problem, method = "stable_fluids", out;
   Pairs settings, overrides;
   std::string sequence, profile = "quick";  // in place of a problem and a folder
+  std::string root, cache;                  // folders, for a sequence
   std::string scene, renderer;              // of pictures of each frame; scene empty: none; renderer empty: by method
   Pairs renderer_settings;
   double exposure = 0;
@@ -31,9 +32,9 @@ struct SimulateOptions {
 int simulate_sequence(const SimulateOptions& options) {
   if (options.profile != "quick" && options.profile != "paper")
     throw Error(fmt::format("--profile '{}': expected quick or paper", options.profile));
-  const auto root = project_root("");
-  const std::string files = sequence_files(root, options.sequence, options.profile, "--sequence");
-  make_sequence(root, options.sequence, options.profile, options.threads);
+  const Folders folders{project_root(options.root), {}, options.cache};
+  const std::string files = sequence_files(folders, options.sequence, options.profile, "--sequence");
+  make_sequence(folders, options.sequence, options.profile, options.threads);
   fmt::print("{}\n", files);
   return 0;
 }
@@ -60,6 +61,7 @@ struct Pictured {
 
 int simulate(const SimulateOptions& options) {
   if (!options.sequence.empty()) return simulate_sequence(options);
+  if (!options.root.empty() || !options.cache.empty()) throw Error("--root and --cache need --sequence");
   const scene::Solver& solver = find_solver(options.method, "--method");
   const scene::Settings settings(solver.settings(), options.settings, options.method);
   const auto problem = std::make_shared<const scene::FlowProblem>(scene::load_flow(options.problem, options.overrides));
@@ -104,6 +106,11 @@ void add_simulate(Commands& commands) {
   c->add_option(
       "--sequence", options->sequence,
       "simulate a sequence of experiments/sequences.toml, if it is not cached, and print its files; excludes PROBLEM and --out");
+  c->add_option(
+      "--root", options->root,
+      "folder of the project with --sequence (default: found above the current folder, else above the program)");
+  c->add_option("--cache", options->cache, "folder of simulated smoke with --sequence (default: results/cache/)")
+      ->type_name("FOLDER");
   c->add_option(
       "--scene", options->scene,
       "also draw each frame as NAME.0000.png, ...: a scene file whose first medium is replaced by the flow's smoke");

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "experiments/application/json.h"
 #include "experiments/application/json_value.h"
@@ -86,8 +87,15 @@ std::string run_command(const Experiment& e, const std::string& rows, const std:
   return fmt::format("experiment run {} --profile {} --rows {} --journal \"$work/{}\"", e.id, e.profile, rows, journal);
 }
 
+// A scene whose smoke is not simulated yet cannot be loaded: its reference counts as missing.
 bool is_missing(const Experiment& e, const SceneCase& c, const scene::ContentStore& store) {
-  const PlannedScene planned = plan_reference(e, c);
+  PlannedScene planned;
+  try {
+    planned = plan_reference(e, c);
+  } catch (const Error&) {
+    if (e.sequences.empty()) throw;
+    return !reference_of(e, c).renderer.empty();
+  }
   if (!planned.reference || is_committed(planned.committed)) return false;
   const std::string key =
       reference_key(*planned.scene, *planned.reference, *planned.reference_settings, planned.committed);
@@ -128,19 +136,27 @@ double Stage::longest() const {
 Schedule schedule(const std::vector<Experiment>& experiments, const Folders& folders, const ScheduleOptions& options) {
   Schedule plan;
   plan.experiments = experiments.size();
-  Stage references{"references", {}, false}, rows{"rows", {}, false}, times{"times", {}, true},
-      gather{"gather", {}, false};
+  Stage sequences, references, rows, times, gather;
+  sequences.name = "sequences", sequences.unknown = true;
+  references.name = "references";
+  rows.name = "rows";
+  times.name = "times", times.alone = true;
+  gather.name = "gather";
   const std::vector<PlannedWork> work = planned_work(experiments, folders.root / "results");
   const scene::ContentStore store(folders.cache);
   std::vector<Job> jobs, films;
   std::map<std::string, const Experiment*> by_id;
   std::map<std::string, std::vector<std::string>> journals;  // of each experiment
+  std::set<std::string> simulated;
   for (std::size_t i = 0; i < experiments.size(); ++i) {
     const Experiment& e = experiments[i];
     by_id[e.id] = &e;
     const auto record = folders.root / "results" / results_name(e.id, e.profile) / "run.json";
     const std::optional<std::vector<Row>> recorded = recorded_rows(record);
     if (!recorded) plan.guessed.push_back(e.id);
+    for (const std::string& name : e.sequences)
+      if (simulated.insert(name).second)
+        sequences.tasks.push_back({0, {fmt::format("simulate --sequence {} --profile {}", name, e.profile)}});
     for (const SceneCase& c : e.scenes) {
       if (!e.kind->draws_pictures() || c.frames || !is_missing(e, c, store)) continue;
       const auto known = work[i].references.find(c.name);
@@ -187,14 +203,18 @@ Schedule schedule(const std::vector<Experiment>& experiments, const Folders& fol
       journals[id].push_back(journal);
     }
   }
-  ScheduledTask& last = gather.tasks.emplace_back();
-  for (const Experiment& e : experiments) {
-    std::string command = fmt::format("experiment gather {} --profile {} --results \"$work/results\"", e.id, e.profile);
-    for (const std::string& journal : journals[e.id]) command += fmt::format(" \"$work/{}\"", journal);
-    last.commands.push_back(command);
-    last.seconds += second_of_gather;
+  const std::vector<double> gathering(experiments.size(), second_of_gather);
+  for (const auto& share : balanced(gathering, options.tasks, options.least)) {
+    ScheduledTask& task = gather.tasks.emplace_back();
+    for (const std::size_t i : share) {
+      const Experiment& e = experiments[i];
+      std::string& command = task.commands.emplace_back(
+          fmt::format("experiment gather {} --profile {} --results \"$work/results\"", e.id, e.profile));
+      for (const std::string& journal : journals[e.id]) command += fmt::format(" \"$work/{}\"", journal);
+      task.seconds += second_of_gather;
+    }
   }
-  for (Stage* stage : {&references, &rows, &times, &gather})
+  for (Stage* stage : {&sequences, &references, &rows, &times, &gather})
     if (!stage->tasks.empty()) plan.stages.push_back(std::move(*stage));
   return plan;
 }

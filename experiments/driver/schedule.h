@@ -21,9 +21,10 @@ struct ScheduledTask {
 
 // A stage begins when all tasks of the stages before it have ended.
 struct Stage {
-  std::string name;  // "references", "rows", "times" or "gather"
+  std::string name;  // "sequences", "references", "rows", "times" or "gather"
   std::vector<ScheduledTask> tasks;
-  bool alone = false;  // a task has its computer to itself
+  bool alone = false;    // a task has its computer to itself
+  bool unknown = false;  // nobody recorded how long its tasks take
 
   double seconds() const;  // of all tasks
   double longest() const;  // of one task
@@ -42,7 +43,7 @@ struct ScheduleOptions {
   bool without_times = false;  // else rows that are timed are computed in one task for each experiment
 };
 
-// From the seconds in the records below folders.results of the project. References that the cache has are left out.
+// From the seconds in the records below results/ of the project. References that the cache has are left out.
 Schedule schedule(const std::vector<Experiment>&, const Folders&, const ScheduleOptions&);
 
 // What the plan costs, for people; a script that hands it to Slurm or to GNU parallel, run from any folder; and all as data.

@@ -79,8 +79,10 @@ std::string schedule_text(const Schedule& plan, int tasks) {
   double work = 0, last = 0;
   const Stage* limit = nullptr;
   for (const Stage& stage : plan.stages) {
-    out += fmt::format("{:<12}{:>7}{:>10}{:>14}{}\n", stage.name, stage.tasks.size(), rough_time(stage.seconds()),
-                       rough_time(stage.longest()), stage.alone ? "  each on a computer of its own" : "");
+    out += fmt::format("{:<12}{:>7}{:>10}{:>14}{}\n", stage.name, stage.tasks.size(),
+                       stage.unknown ? "unknown" : rough_time(stage.seconds()),
+                       stage.unknown ? "unknown" : rough_time(stage.longest()),
+                       stage.alone ? "  each on a computer of its own" : "");
     work += stage.seconds();
     last += stage.longest();
     if (!limit || stage.longest() > limit->longest()) limit = &stage;
@@ -113,7 +115,7 @@ submit() {
   std::string before;
   for (const Stage& stage : plan.stages) {
     // Twice what is expected, and the time in which a task finishes its row.
-    const double minutes = std::ceil((2 * stage.longest() + 240) / 60);
+    const double minutes = stage.unknown ? 24 * 60 : std::ceil((2 * stage.longest() + 240) / 60);
     out += fmt::format("{}=$(submit {} {} {:.0f} {}{})\n", stage.name, stage.name, stage.tasks.size(), minutes,
                        stage.alone ? "--exclusive" : fmt::format("--cpus-per-task={}", options.threads),
                        before.empty() ? "" : fmt::format(" --dependency=afterok:\"${}\"", before));
@@ -131,7 +133,7 @@ JOBS=${JOBS:-$(nproc)}
     out += fmt::format(
         "seq {} | parallel --will-cite --joblog \"$work/{}.joblog\" --resume-failed --halt soon,fail=1 -j {} \"$work/task\" "
         "\"$work/tasks/{}\"\n",
-        stage.tasks.size(), stage.name, stage.alone || stage.name == "gather" ? "1" : "\"$JOBS\"", stage.name);
+        stage.tasks.size(), stage.name, stage.alone ? "1" : "\"$JOBS\"", stage.name);
   return out + "echo \"$work/results\"\n";
 }
 

@@ -31,7 +31,7 @@ echo "${COMPREPLY[*]}"
     return run_command("bash try.bash airlight " + words, folder).out;
   };
   CHECK(complete("re") == "render results\n");
-  CHECK(complete("experiment r") == "run\n");
+  CHECK(complete("experiment r") == "run reference\n");
   CHECK(complete("experiment run --res") == "--results --resume\n");
   CHECK(complete("experiment run headline --thr") == "--threads\n");
   CHECK(complete("render fog.toml --method shadow") == "shadow_planes shadow_planes_gpu\n");
