@@ -62,7 +62,7 @@ TEST_CASE("sun: a map's columns converge to the exact ones at every height", "[w
             std::uniform_real_distribution<double> uniform(-1, 1);
             const wavelet_fog::SunMap map(medium, sun, fine ? 0.25 : 1, {1, {}});
             double squares = 0, scale = 0;
-            for (int i = 0; i < 200; ++i) {
+            for (int i = 0; i < 2000; ++i) {
               const double depth = uniform(random), height = uniform(random), across = uniform(random);
               const Point3 x(8 * across, 3 * height, 9 + 8 * depth);
               const double exact = density_integral(medium, {x, sun}, {0, infinity}), got = map.column(x);
