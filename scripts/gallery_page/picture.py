@@ -151,6 +151,51 @@ def compressed(rows):
     return zlib.compress(bytes(data), 9)
 
 
+def decompressed(png):
+    """Rows of pixels of a PNG image of 8-bit RGB that is not interlaced."""
+    parts = list(chunks(png))
+    width, height, *kind = struct.unpack(">IIBBBBB", parts[0][1])
+    if kind != [8, 2, 0, 0, 0]:
+        raise ValueError(f"a PNG image of kind {kind}, expected 8-bit RGB")
+    data = zlib.decompress(b"".join(content for name, content in parts if name == b"IDAT"))
+    size, rows, above = 3 * width, [], bytearray(3 * width)
+    for y in range(height):
+        method, row = data[y * (size + 1)], bytearray(data[y * (size + 1) + 1:(y + 1) * (size + 1)])
+        for i in range(size if method else 0):
+            left, up, corner = (row[i - 3], above[i], above[i - 3]) if i > 2 else (0, above[i], 0)
+            if method == 1:
+                by = left
+            elif method == 2:
+                by = up
+            elif method == 3:
+                by = (left + up) // 2
+            else:
+                to = left + up - corner
+                by = min((left, up, corner), key=lambda v: abs(to - v))
+            row[i] = (row[i] + by) & 255
+        rows.append(bytes(row))
+        above = row
+    return rows
+
+
+STEPS = (2, 4, 6, 8)  # of 255, between the values that a picture keeps
+
+
+def no_larger_than(png, most):
+    """The PNG with as many bytes at the most: values are rounded to the smallest of STEPS that does it. White stays white."""
+    if len(png) <= most:
+        return png
+    rows = decompressed(png)
+    for step in STEPS:
+        table = bytes(min(255, (v + step // 2) // step * step) if v < 255 else 255 for v in range(256))
+        data, out = compressed([row.translate(table) for row in rows]), png[:8]
+        for name, content in chunks(png):
+            out += b"" if name == b"IDAT" else (chunk(b"IDAT", data) if name == b"IEND" else b"") + chunk(name, content)
+        if len(out) <= most:
+            return out
+    raise ValueError(f"the picture has {len(out)} bytes with steps of {STEPS[-1]}, expected at most {most}: split it")
+
+
 def pixels_of(row):
     return [row[i:i + 3] for i in range(0, len(row), 3)]
 

@@ -3,6 +3,7 @@
 import importlib.machinery
 import importlib.util
 import os
+import random
 import re
 import shutil
 import struct
@@ -200,6 +201,23 @@ class Gallery(Tree):
             self.assertEqual(self.objects(2, word, "--check").count("\n"), 1)
         self.write("experiments/gallery.toml", GALLERY)
         self.objects(2, "unknown picture 'on' (nearest: one)", "on")
+
+    def test_large_pictures_keep_fewer_colours(self):
+        sys.path.insert(0, f"{SOURCE}/scripts/gallery_page")
+        from picture import chunk, compressed, decompressed, no_larger_than
+        noise, white = random.Random(4), bytes([255] * 3)
+        rows = [b"".join(white if x < 5 else bytes(noise.randrange(255) for _ in range(3)) for x in range(40)) for _ in range(30)]
+        head = struct.pack(">IIBBBBB", 40, 30, 8, 2, 0, 0, 0)
+        png = b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", compressed(rows)) + chunk(b"IEND", b"")
+        self.assertEqual(decompressed(png), rows)
+        self.assertEqual(no_larger_than(png, len(png)), png)
+        smaller = no_larger_than(png, len(png) - 1)
+        self.assertLess(len(smaller), len(png))
+        found = b"".join(decompressed(smaller))
+        self.assertLessEqual(max(abs(a - b) for a, b in zip(found, b"".join(rows))), 1)
+        self.assertTrue(all(row.startswith(white * 5) for row in decompressed(smaller)))
+        with self.assertRaisesRegex(ValueError, "split it"):
+            no_larger_than(png, 100)
 
     def test_what_is_missing(self):
         self.assertEqual(self.run_script("gallery")[0], 0)
