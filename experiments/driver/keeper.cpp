@@ -195,6 +195,7 @@ void RowKeeper::judge_times() {
     else
       untimed += row.note.empty();
   }
+  if (computers.empty() && untimed == 0) return;
   if (computers.size() == 1 && untimed == 0) {
     const std::string& made_on = computers.begin()->first;
     if (!made_on.starts_with(processor() + " on ")) outcome_.made_on = made_on.substr(0, made_on.rfind(" on "));
