@@ -90,8 +90,8 @@ std::string schedule_text(const Schedule& plan, int tasks) {
   const ScheduledTask* slowest = nullptr;
   for (const ScheduledTask& task : limit->tasks)
     if (!slowest || task.seconds > slowest->seconds) slowest = &task;
-  out += fmt::format("With {} tasks at once all takes {}: {:.1f} times as fast as one computer.\n", tasks,
-                     rough_time(last), work / last);
+  out += fmt::format("With {} tasks at once {} takes {}: {:.1f} times as fast as one task at a time.\n", tasks,
+                     plan.stages.front().unknown ? "all but the sequences" : "all", rough_time(last), work / last);
   out += fmt::format("The longest task, {}: {}{}\n", rough_time(slowest->seconds), slowest->commands.front(),
                      slowest->commands.size() > 1 ? fmt::format(" and {} more", slowest->commands.size() - 1) : "");
   if (!plan.guessed.empty())

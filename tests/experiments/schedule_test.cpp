@@ -39,6 +39,24 @@ TEST_CASE("a plan has every job once, and no task takes more than 4/3 of the bes
       CHECK(longest <= 2 * least);
       if (tasks == 1) CHECK(longest == Approx(total));
     }
+  // Against the best of all plans.
+  for (int trial = 0; trial < 50; ++trial) {
+    constexpr int tasks = 3, jobs = 7, plans = 2187;  // 3^7
+    std::vector<double> seconds;
+    for (int i = 0; i < jobs; ++i) seconds.push_back(lengths(random));
+    double best = infinity, got = 0;
+    for (int plan = 0; plan < plans; ++plan) {
+      double loads[tasks] = {};
+      for (int i = 0, rest = plan; i < jobs; ++i, rest /= tasks) loads[rest % tasks] += seconds[std::size_t(i)];
+      best = std::min(best, *std::max_element(loads, loads + tasks));
+    }
+    for (const auto& share : experiments::balanced(seconds, tasks, 1e-3)) {
+      double sum = 0;
+      for (const std::size_t job : share) sum += seconds[job];
+      got = std::max(got, sum);
+    }
+    CHECK(got <= (4.0 / 3 - 1.0 / (3 * tasks)) * best * (1 + 1e-12));
+  }
   // Graham's example, where the bound is met: 11 instead of 9.
   const auto worst = experiments::balanced({5, 5, 4, 4, 3, 3, 3}, 3, 1e-3);
   double longest = 0;

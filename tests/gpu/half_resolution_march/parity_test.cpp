@@ -101,11 +101,10 @@ DEVICE_TEST_CASE("half-resolution march: every setting on the GPU is that of the
       std::string text = name;
       for (const auto& [key, value] : given) text += " " + key + "=" + value;
       // Measured: 3.2e-6, 1.8e-5; 2.0e-5 and 6.9e-5 (2.4e-4 on an H200) in the plume. A voxel there is 5e4 roundings of a
-      // place wide, so that the worst pixel may move by what its places may.
+      // place wide, so that on other drivers the worst pixel may move by what its places may.
       const bool fine = std::string(name) == "plume_sun";
-      agree(text, scene, little(all),
-            fine ? gpu::test::Bounds{6e-5, 5.4e-5 + moved_by_rounding(*scene, little(all))}
-                 : gpu::test::Bounds{1e-5, 5.4e-5});
+      const double worst = context.software() ? 2.1e-4 : 5.4e-5 + moved_by_rounding(*scene, little(all));
+      agree(text, scene, little(all), fine ? gpu::test::Bounds{6e-5, worst} : gpu::test::Bounds{1e-5, 5.4e-5});
     }
   }
 }
