@@ -79,7 +79,7 @@ std::vector<std::uint64_t> fewer_samples(const std::string& folder, const Identi
 Accumulation start_from(const World& world, const scene::View& view, const std::string& folder,
                         std::vector<std::string>& notes) {
   Options options = world.options();
-  const Accumulation fresh = empty_accumulation(world, view);
+  Accumulation fresh = empty_accumulation(world, view);
   if (auto found = load(fresh, cache_file(folder, fresh.identity, options), options.samples, notes)) return *found;
   if (options.target_error > 0) return fresh;
   for (const std::uint64_t count : fewer_samples(folder, fresh.identity, options.samples)) {
