@@ -93,9 +93,14 @@ double recorded_seconds(const std::vector<Row>& rows) {
 void from_own_record(const Experiment& e, const Record& record, ExpectedSeconds& expected) {
   fill_rows(
       e, record.rows, [](const auto&...) { return 1.0; }, expected);
-  const double scale = record.row_seconds / std::max(total(expected.timed), 1e-9);
-  for (double& seconds : expected.once) seconds *= scale;
-  for (double& seconds : expected.timed) seconds *= scale;
+  const double all = total(expected.timed);
+  if (all > 0) {
+    for (double& seconds : expected.once) seconds *= record.row_seconds / all;
+    for (double& seconds : expected.timed) seconds *= record.row_seconds / all;
+  } else {  // figures of rows that nobody timed one by one
+    std::fill(expected.timed.begin(), expected.timed.end(), record.row_seconds / double(expected.timed.size()));
+    expected.once = expected.timed;
+  }
   expected.references = record.references;
 }
 

@@ -182,6 +182,7 @@ Schedule schedule(const std::vector<Experiment>& experiments, const Folders& fol
   gather.name = "gather";
   const scene::ContentStore store(folders.cache);
   std::vector<Job> row_jobs;
+  std::vector<ScheduledTask> timed_runs;
   std::vector<MissingReference> missing;
   std::map<std::string, const Experiment*> by_id;
   std::map<std::string, std::vector<std::string>> journals;  // of each experiment
@@ -213,7 +214,7 @@ Schedule schedule(const std::vector<Experiment>& experiments, const Folders& fol
     const bool timed = e.timing.budget > 0 || !e.kind->times_rows();
     if (timed && !(options.without_times && e.kind->times_rows())) {
       const std::string journal = "times/" + e.id;
-      times.tasks.push_back({expected.of_rows(), {run_command(e, "1/1", journal)}});
+      timed_runs.push_back({expected.of_rows(), {run_command(e, "1/1", journal)}});
       journals[e.id].push_back(journal);
       continue;
     }
@@ -222,6 +223,7 @@ Schedule schedule(const std::vector<Experiment>& experiments, const Folders& fol
   }
 
   plan_references(missing, options, references, films, plan.bytes);
+  times.tasks = shared(timed_runs, options);
   for (const auto& share : balanced(seconds_of(row_jobs), options.tasks, options.least)) {
     const std::string journal = fmt::format("rows/{}", rows.tasks.size() + 1);
     ScheduledTask& task = rows.tasks.emplace_back();
