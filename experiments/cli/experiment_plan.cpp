@@ -6,11 +6,14 @@
 #include "experiments/application/progress.h"
 #include "experiments/application/say.h"
 #include "experiments/cli/commands.h"
+#include "experiments/cli/samples.h"
 #include "experiments/driver/plan.h"
 #include "experiments/driver/reference_cache.h"
 #include "experiments/driver/run.h"
 #include "experiments/driver/schedule.h"
 #include "experiments/driver/sequences.h"
+#include "reference/path_tracer/cache.h"
+#include "scene/base/content_store.h"
 #include "scene/base/error.h"
 
 namespace airlight::experiments::cli {
@@ -19,7 +22,8 @@ namespace {
 struct PlanOptions {
   std::string root, profile = "quick", cache, work = "airlight-plan", scene;
   std::vector<std::string> names;
-  int tasks = 0, threads = 1;
+  int tasks = 0, threads = 1, memory = 0;
+  std::string samples;
   double least = 60;
   bool without_times = false, slurm = false, parallel = false, json = false;
 };
@@ -36,6 +40,7 @@ std::vector<Experiment> read(const PlanOptions& options, const Folders& folders)
 
 int plan(const PlanOptions& options) {
   if (options.tasks < 1) throw Error("--tasks is missing; see --help");
+  if (options.memory > 0 && !options.slurm) throw Error("--memory: only Slurm is asked for memory; see --slurm");
   if (options.slurm + options.parallel + options.json > 1)
     throw Error("--slurm, --parallel and --json: expected one of them");
   const Folders folders{project_root(options.root), {}, options.cache};
@@ -49,7 +54,8 @@ int plan(const PlanOptions& options) {
                              std::filesystem::absolute(options.work).string(),
                              std::filesystem::absolute(folders.root).string(),
                              std::filesystem::absolute(folders.cache).string(),
-                             options.threads};
+                             options.threads,
+                             options.memory};
   fmt::print("{}", options.slurm      ? slurm_script(made, script)
                    : options.parallel ? parallel_script(made, script)
                    : options.json     ? to_json(made).dump(1) + "\n"
@@ -57,8 +63,23 @@ int plan(const PlanOptions& options) {
   return 0;
 }
 
+// Keeps the samples of the range; a later call without one makes the film of all that are kept.
+void make_range(const PlannedScene& planned, const SampleRange& range, const scene::Execution& execution) {
+  if (!planned.reference->monte_carlo())
+    throw Error(fmt::format("--samples: the reference of scene '{}' is no path tracer and has no samples",
+                            planned.scene->name));
+  planned.reference->require_support(*planned.scene, *planned.reference_settings);
+  const path_tracer::World world(planned.scene, path_tracer::parse_options(*planned.reference_settings));
+  const std::string folder = path_tracer::samples_folder(*execution.store);
+  if (!path_tracer::keep_range(world, scene::view_of(*planned.scene), folder, range.begin, range.end, execution))
+    throw scene::Interrupted("interrupted: its samples are kept");
+}
+
 int make_reference(const PlanOptions& options) {
   if (options.names.size() != 1 || options.scene.empty()) throw Error("NAME or SCENE is missing; see --help");
+  const std::optional<SampleRange> range = sample_range(options.samples);
+  if (range && !range->explicit_range)
+    throw Error(fmt::format("--samples '{}': expected a range A..B", options.samples));
   const Folders folders{project_root(options.root), {}, options.cache};
   const std::vector<Experiment> experiments = read(options, folders);
   const Experiment& e = experiments.front();
@@ -72,9 +93,15 @@ int make_reference(const PlanOptions& options) {
     Progress progress("reference of " + c.name);
     scene::Execution execution = progress.execution(options.threads);
     execution.store = &store;
+    const bool there = is_there(planned, store);
+    if (range && !there) {
+      make_range(planned, *range, execution);
+      fmt::print("reference of {}: samples {} are kept\n", c.name, options.samples);
+      return 0;
+    }
     const Reference made =
         reference_for(planned.scene, *planned.reference, *planned.reference_settings, execution, planned.committed);
-    fmt::print("reference of {}: {}{}\n", c.name, made.key, made.cached || made.committed ? ", was there" : "");
+    fmt::print("reference of {}: {}{}\n", c.name, made.key, there ? ", was there" : "");
     return 0;
   }
   throw Error(fmt::format("{}: there is no scene '{}'", e.id, options.scene));
@@ -110,6 +137,8 @@ void add_plan(Commands& commands, CLI::App& experiment) {
   c->add_flag("--without-times", options->without_times,
               "render each picture once and keep no times; else an experiment that times its rows is one task, with a "
               "computer of its own");
+  c->add_option("--memory", options->memory, "memory [GiB] that a task asks of Slurm (default: what the site gives)")
+      ->check(CLI::Range(1, 65536));
   add_project(c, *options);
   commands.add_data(c);
   commands.add_gpu(c);
@@ -123,6 +152,10 @@ void add_reference(Commands& commands, CLI::App& experiment) {
   const auto name = std::make_shared<std::string>();
   c->add_option("NAME", *name, "the experiment: group/name (required)");
   c->add_option("SCENE", options->scene, "name of the scene in the experiment's tables (required)");
+  c->add_option(
+      "--samples", options->samples,
+      "only the samples A..B of every pixel, A a multiple of 64 (path_tracer only): they are kept in the cache, "
+      "and the command without this option makes the reference of all ranges there");
   add_project(c, *options);
   commands.add_limit(c);
   commands.add_data(c);

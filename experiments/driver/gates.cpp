@@ -38,6 +38,7 @@ GateResult judge(const Experiment& experiment, const GateCase& gate, const Row& 
   result.scene = row.scene;
   result.method = row.method;
   result.setting = row.setting;
+  result.seconds = row.prepare_seconds + row.seconds.value;
   result.metric = gate.metric;
   result.position = gate.position;
   result.kind = kind_of(row, gate.metric);

@@ -34,7 +34,8 @@ void write_junit(const std::string& file, const std::vector<GateResult>& gates, 
       gates.size() + !error.empty(), counts.failed, counts.skipped, int(!error.empty()));
   for (const GateResult& gate : gates) {
     const std::string group = gate.name.substr(0, gate.name.find(':'));
-    out += fmt::format("<testcase classname=\"{}\" name=\"{}\">", escaped(group), escaped(gate.name));
+    out += fmt::format("<testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\">", escaped(group), escaped(gate.name),
+                       gate.seconds);
     out += gate.skipped  ? fmt::format("<skipped message=\"{}\"/>", escaped(gate.text))
            : gate.passed ? fmt::format("<system-out>{}</system-out>", escaped(gate.text))
                          : fmt::format("<failure message=\"{}\"/>", escaped(gate.text));

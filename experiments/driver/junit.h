@@ -7,7 +7,7 @@
 
 namespace airlight::experiments {
 
-// Atomic. `error`, unless empty: what ended the command before all gates were judged. Throws Error.
+// Atomic. The time of a gate is that of the row which it judges: one render and its preparation. `error`, unless empty: what ended the command before all gates were judged. Throws Error.
 void write_junit(const std::string& file, const std::vector<GateResult>&, const std::string& error = "");
 
 }  // namespace airlight::experiments

@@ -8,9 +8,7 @@
 
 #include "experiments/driver/timing.h"
 #include "scene/base/settings.h"
-#include "scene/media/fitted.h"
 #include "scene/media/fogmap.h"
-#include "scene/media/legendre_box.h"
 #include "scene/media/spline_map.h"
 
 namespace airlight::experiments {
@@ -63,43 +61,11 @@ void shift(scene::Region& region, const Vec3& by) {
       [&](scene::Slab& slab) { slab.lo += slab.normal.dot(by), slab.hi += slab.normal.dot(by); });
 }
 
-void shift(scene::DensityField& field, const Vec3& by) {
-  const auto shifted = [&](const scene::GaussianSum& sum) {
-    scene::GaussianSum result = sum;
-    for (scene::Gaussian& g : result.gaussians) g.center += by;
-    return result;
-  };
-  const auto grid_shifted = [&](const scene::VoxelGrid& grid) {
-    scene::VoxelGrid result = grid;
-    result.translation += by;
-    return result;
-  };
-  scene::match(
-      field, [](scene::Homogeneous&) {}, [&](scene::GaussianSum& sum) { sum = shifted(sum); },
-      [&](scene::GridPointer& grid) { grid = std::make_shared<const scene::VoxelGrid>(grid_shifted(*grid)); },
-      [&](scene::FogmapPointer& fog) {
-        auto moved = std::make_shared<Fogmap>(*fog);
-        moved->x0 += by[0], moved->z0 += by[2];
-        fog = std::move(moved);
-      },
-      [&](scene::LegendrePointer& box) {
-        const Box& at = box->box();
-        box =
-            std::make_shared<const scene::LegendreBox>(Box{at.lo + by, at.hi + by}, box->shape(), box->coefficients());
-      },
-      [&](scene::FittedPointer& fitted) {
-        scene::Fitted moved = *fitted;
-        moved.gaussians = shifted(moved.gaussians);
-        moved.grid = grid_shifted(moved.grid);
-        fitted = std::make_shared<const scene::Fitted>(std::move(moved));
-      });
-}
-
 bool move_media(Scene& scene) {
   const Vec3 by(1e-3, 0, 0);
   for (scene::Medium& medium : scene.media) {
     const bool has_place = bounding_box(medium).size().allFinite();
-    shift(medium.field, by);
+    medium.field = moved(medium.field, by);
     shift(medium.region, by);
     if (!has_place) medium.sigma_t *= 1.001;
   }

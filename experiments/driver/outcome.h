@@ -31,6 +31,7 @@ struct GateResult {
   bool upper = true;                                               // at_most; else at_least
   double bound = 0;
   std::optional<Estimate> measured = {};  // nothing where the figure is not defined
+  double seconds = 0;                     // [s] of the row that it judges: one render and its preparation
 };
 
 // How many passed, failed and were skipped.

@@ -119,6 +119,14 @@ PlannedScene plan_reference(const Experiment& e, const SceneCase& c) {
   return plan_reference(e, c, std::make_shared<const scene::Scene>(scene::load_scene(c.file.string(), c.overrides)));
 }
 
+std::string reference_key(const PlannedScene& planned) {
+  return reference_key(*planned.scene, *planned.reference, *planned.reference_settings, planned.committed);
+}
+
+bool is_there(const PlannedScene& planned, const scene::ContentStore& store) {
+  return is_committed(planned.committed) || store.find("references/" + reference_key(planned) + ".exr");
+}
+
 PlannedScene plan_scene(const Experiment& e, const SceneCase& c, const scene::ContentStore& store) {
   return plan_scene(e, c, std::make_shared<const scene::Scene>(scene::load_scene(c.file.string(), c.overrides)), store);
 }

@@ -32,6 +32,10 @@ struct PlannedScene {
 // Loads the scene; no rows. Throws Error (file, line, what was found) for a scene or override that is no good.
 PlannedScene plan_reference(const Experiment&, const SceneCase&);
 
+// The key of the scene's reference (reference_cache.h), and whether its film is committed or lies in the store.
+std::string reference_key(const PlannedScene&);
+bool is_there(const PlannedScene&, const scene::ContentStore&);
+
 // Plans a scene with its rows. A row's key is the content of all that its figures and times depend on: scene, method,
 // reference, metrics, rule of timing; sources, compiler and libraries of the program; processor and threads; the
 // device, and its shaders if they come from AIRLIGHT_SHADERS. Throws Error (file, line, what was found) for an invalid

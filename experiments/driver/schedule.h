@@ -21,7 +21,7 @@ struct ScheduledTask {
 
 // A stage begins when all tasks of the stages before it have ended.
 struct Stage {
-  std::string name;  // "sequences", "references", "rows", "times" or "gather"
+  std::string name;  // "sequences", "references", "films", "rows", "times" or "gather"
   std::vector<ScheduledTask> tasks;
   bool alone = false;    // a task has its computer to itself
   bool unknown = false;  // nobody recorded how long its tasks take
@@ -33,7 +33,9 @@ struct Stage {
 struct Schedule {
   std::vector<Stage> stages;  // none is empty
   std::size_t experiments = 0, rows = 0;
-  std::vector<std::string> guessed;  // experiments without a record of this profile: their seconds are the others' mean
+  std::vector<std::string> scaled;   // experiments whose seconds come from the record of the profile quick
+  std::vector<std::string> guessed;  // experiments with rows that no record has: they take as long as the others do
+  double bytes = 0;                  // of files with ranges of samples
 };
 
 struct ScheduleOptions {
@@ -43,7 +45,8 @@ struct ScheduleOptions {
   bool without_times = false;  // else rows that are timed are computed in one task for each experiment
 };
 
-// From the seconds in the records below results/ of the project. References that the cache has are left out.
+// From the seconds in the records below results/ of the project (expected_seconds.h). References that the cache has are left out; one that
+// takes longer than a fair share is cut into ranges of samples, and the stage "films" joins them.
 Schedule schedule(const std::vector<Experiment>&, const Folders&, const ScheduleOptions&);
 
 // What the plan costs, for people; a script that hands it to Slurm or to GNU parallel, run from any folder; and all as data.
@@ -52,6 +55,7 @@ struct ScriptOptions {
   std::string made_by, program;   // command line, path of the program
   std::string work, root, cache;  // absolute folders that all computers see: of the plan, the project, the references
   int threads = 1;                // of a task
+  int memory = 0;                 // [GiB] of a task; 0: what the site gives
 };
 std::string slurm_script(const Schedule&, const ScriptOptions&);
 std::string parallel_script(const Schedule&, const ScriptOptions&);

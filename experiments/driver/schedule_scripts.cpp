@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "experiments/driver/schedule.h"
@@ -19,6 +20,13 @@ std::string quoted(const std::string& text) {
   std::string out = "'";
   for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return out + "'";
+}
+
+// Eight of them at most.
+std::string first_names(const std::vector<std::string>& names) {
+  constexpr std::size_t most = 8;
+  const std::vector<std::string> first(names.begin(), names.begin() + std::ptrdiff_t(std::min(most, names.size())));
+  return fmt::format("{}{}", fmt::join(first, ", "), names.size() > most ? ", ..." : "");
 }
 
 // What both scripts begin with: the folder, the lists of tasks, and what runs a task.
@@ -94,10 +102,16 @@ std::string schedule_text(const Schedule& plan, int tasks) {
                      plan.stages.front().unknown ? "all but the sequences" : "all", rough_time(last), work / last);
   out += fmt::format("The longest task, {}: {}{}\n", rough_time(slowest->seconds), slowest->commands.front(),
                      slowest->commands.size() > 1 ? fmt::format(" and {} more", slowest->commands.size() - 1) : "");
-  if (!plan.guessed.empty())
+  if (plan.bytes > 0)
+    out +=
+        fmt::format("Ranges of samples take {:.2g} GB in the cache until films are made of them.\n", plan.bytes / 1e9);
+  if (!plan.scaled.empty())
     out += fmt::format(
-        "{} experiments have no record of this profile and are taken to last as long as the others do: {}\n",
-        plan.guessed.size(), fmt::join(plan.guessed, ", "));
+        "{} experiments have no record of this profile. Their seconds come from the profile quick, times pixels and samples.\n",
+        plan.scaled.size());
+  if (!plan.guessed.empty())
+    out += fmt::format("{} experiments have rows without a record, which are taken to last as long as the others: {}\n",
+                       plan.guessed.size(), first_names(plan.guessed));
   return out;
 }
 
@@ -112,12 +126,13 @@ submit() {
 }
 
 )sh";
+  const std::string memory = options.memory > 0 ? fmt::format(" --mem={}G", options.memory) : "";
   std::string before;
   for (const Stage& stage : plan.stages) {
     // Twice what is expected, and the time in which a task finishes its row.
     const double minutes = stage.unknown ? 24 * 60 : std::ceil((2 * stage.longest() + 240) / 60);
     out += fmt::format("{}=$(submit {} {} {:.0f} {}{})\n", stage.name, stage.name, stage.tasks.size(), minutes,
-                       stage.alone ? "--exclusive" : fmt::format("--cpus-per-task={}", options.threads),
+                       (stage.alone ? "--exclusive" : fmt::format("--cpus-per-task={}", options.threads)) + memory,
                        before.empty() ? "" : fmt::format(" --dependency=afterok:\"${}\"", before));
     before = stage.name;
   }

@@ -19,31 +19,6 @@ constexpr double unknown_experiment = 15;     // [s] where there is no record at
 constexpr double least_experiment = 0.1;      // [s]
 constexpr double share_that_is_enough = 0.1;  // to say from it how long the whole piece takes
 
-// Nothing where there is no record, or none that can be read: then it only does not help to plan.
-std::optional<PlannedWork> recorded(const std::filesystem::path& file, bool reads_films,
-                                    std::set<std::string>& shared) {
-  if (!std::filesystem::exists(file)) return std::nullopt;
-  PlannedWork work;
-  try {
-    const nlohmann::json record = read_json(file.string());
-    work.rows = record.at("seconds").get<double>();
-    for (const auto& reference : record.at("references")) {
-      // A film that was read has the seconds of its making, which the run did not take.
-      if (!reference.value("committed", std::string()).empty()) continue;
-      const double seconds = reference.at("seconds").get<double>();
-      if (!reference.at("from_cache").get<bool>()) work.rows -= seconds;
-      if (!reads_films && shared.insert(reference.at("key").get<std::string>()).second)
-        work.references[reference.at("scene").get<std::string>()] += seconds;
-    }
-  } catch (const nlohmann::json::exception&) {
-    return std::nullopt;
-  } catch (const Error&) {
-    return std::nullopt;
-  }
-  work.rows = std::max(work.rows, least_experiment);
-  return work;
-}
-
 }  // namespace
 
 void TimeLeft::done(double piece, double seconds) {
@@ -75,6 +50,30 @@ double PlannedWork::total() const {
   return sum;
 }
 
+std::optional<PlannedWork> recorded_work(const std::filesystem::path& file, bool reads_films,
+                                         std::set<std::string>& shared) {
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  PlannedWork work;
+  try {
+    const nlohmann::json record = read_json(file.string());
+    work.rows = record.at("seconds").get<double>();
+    for (const auto& reference : record.at("references")) {
+      // A film that was read has the seconds of its making, which the run did not take.
+      if (!reference.value("committed", std::string()).empty()) continue;
+      const double seconds = reference.at("seconds").get<double>();
+      if (!reference.at("from_cache").get<bool>()) work.rows -= seconds;
+      if (!reads_films && shared.insert(reference.at("key").get<std::string>()).second)
+        work.references[reference.at("scene").get<std::string>()] += seconds;
+    }
+  } catch (const nlohmann::json::exception&) {
+    return std::nullopt;
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+  work.rows = std::max(work.rows, least_experiment);
+  return work;
+}
+
 std::vector<PlannedWork> planned_work(const std::vector<Experiment>& experiments,
                                       const std::filesystem::path& results) {
   std::vector<PlannedWork> all;
@@ -83,7 +82,7 @@ std::vector<PlannedWork> planned_work(const std::vector<Experiment>& experiments
   int known = 0;
   for (const Experiment& e : experiments) {
     const auto found =
-        recorded(results / results_name(e.id, e.profile) / "run.json", !e.reference.committed.empty(), shared);
+        recorded_work(results / results_name(e.id, e.profile) / "run.json", !e.reference.committed.empty(), shared);
     all.push_back(found.value_or(PlannedWork{}));
     all.back().name = fmt::format("{} ({})", e.id, e.profile);
     sum += all.back().total();

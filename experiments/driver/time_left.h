@@ -2,6 +2,8 @@
 #pragma once
 #include <filesystem>
 #include <map>
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -41,6 +43,11 @@ struct PlannedWork {
   std::map<std::string, double> references;  // by scene
   double total() const;
 };
+
+// From one record; nothing where there is none, or none that can be read: then it only does not help to plan. `reads_films`: its references are
+// films that lie there. References whose keys are in `shared` are left out; the others' keys go there.
+std::optional<PlannedWork> recorded_work(const std::filesystem::path& record, bool reads_films,
+                                         std::set<std::string>& shared);
 
 // From the records below the results folder. An experiment without one is taken to last as long as the others do on
 // average. A reference that several experiments share is counted for the first of them.

@@ -7,20 +7,12 @@
 #include <optional>
 
 #include "scene/base/error.h"
-#include "scene/media/fitted.h"
-#include "scene/media/fogmap.h"
-#include "scene/media/legendre_box.h"
-#include "scene/media/voxel_grid.h"
 
 namespace airlight::fogshop {
 namespace {
 
-using scene::FittedPointer;
-using scene::FogmapPointer;
 using scene::GaussianSum;
-using scene::GridPointer;
 using scene::Homogeneous;
-using scene::LegendrePointer;
 using scene::Medium;
 // The mean cosine of isotropic and Henyey-Greenstein scattering; nothing for other phase functions, which Fogshop refuses.
 std::optional<double> mean_cosine_of(const scene::PhaseFunction& phase) {
@@ -47,12 +39,8 @@ std::vector<std::string> unsupported_media(const std::vector<Medium>& media) {
     const auto object = [&](const std::string& why) { reasons.push_back(label(media, i) + " " + why); };
     if (const std::string why = scene::unknown_field<Homogeneous, GaussianSum>(media, i); !why.empty())
       reasons.push_back(why);
-    const std::string why = scene::match(
-        medium.field, [](const Homogeneous&) { return std::string(); },
-        [](const GaussianSum& sum) { return objection_to(sum); }, [](const GridPointer&) { return std::string(); },
-        [](const FogmapPointer&) { return std::string(); }, [](const LegendrePointer&) { return std::string(); },
-        [](const FittedPointer&) { return std::string(); });
-    if (!why.empty()) object(why);
+    const auto* sum = std::get_if<GaussianSum>(&medium.field);
+    if (const std::string why = sum ? objection_to(*sum) : ""; !why.empty()) object(why);
     if (!std::holds_alternative<scene::Unbounded>(medium.region))
       object("is bounded, and the closed forms know no boundary");
     const auto g = mean_cosine_of(medium.phase);
@@ -95,19 +83,13 @@ Fog make_fog(const std::vector<Medium>& media) {
       constant_albedos.push_back(medium.albedo);
     };
     add_constant(strength * constant_part(medium.field));
-    scene::match(
-        medium.field, [](const Homogeneous&) {},
-        [&](const GaussianSum& sum) {
-          for (scene::Gaussian g : sum.gaussians) {
-            g.amplitude *= strength;
-            fog.sum.gaussians.push_back(g);
-            albedos.push_back(medium.albedo);
-          }
-        },
-        [](const GridPointer&) { throw Error("fogshop: a grid, which supports() refuses"); },
-        [](const FogmapPointer&) { throw Error("fogshop: a fogmap, which supports() refuses"); },
-        [](const LegendrePointer&) { throw Error("fogshop: a Legendre box, which supports() refuses"); },
-        [](const FittedPointer&) { throw Error("fogshop: a fitted grid, which supports() refuses"); });
+    const auto* sum = std::get_if<GaussianSum>(&medium.field);
+    if (!sum) continue;  // homogeneous: supports() refuses all other fields
+    for (scene::Gaussian g : sum->gaussians) {
+      g.amplitude *= strength;
+      fog.sum.gaussians.push_back(g);
+      albedos.push_back(medium.albedo);
+    }
   }
   const auto differs = [&](const Rgb& albedo) { return ((albedo - fog.albedo).abs() > 1e-12).any(); };
   if (std::none_of(albedos.begin(), albedos.end(), differs) &&

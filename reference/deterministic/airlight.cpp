@@ -9,10 +9,6 @@
 #include "reference/deterministic/light_plane.h"
 #include "reference/deterministic/shadow.h"
 #include "scene/math/quadrature.h"
-#include "scene/media/fitted.h"
-#include "scene/media/fogmap.h"
-#include "scene/media/legendre_box.h"
-#include "scene/media/voxel_grid.h"
 
 namespace airlight::deterministic {
 namespace {
@@ -89,13 +85,8 @@ struct AirlightIntegrator::Impl {
   Impl(const Scene& s, const Accuracy& a)
       : scene(s), accuracy(a), depth_error(1e-3 * std::max(a.relative_tolerance, 1e-13)), tables(s.media.size()) {
     for (std::size_t m = 0; m < scene.media.size(); ++m)
-      tables[m] = scene::match(
-          scene.media[m].field, [](const scene::Homogeneous&) { return std::optional<GaussianTable>(); },
-          [](const scene::GaussianSum& sum) { return make_gaussian_table(sum); },
-          [](const scene::GridPointer&) { return std::optional<GaussianTable>(); },
-          [](const scene::FogmapPointer&) { return std::optional<GaussianTable>(); },
-          [](const scene::LegendrePointer&) { return std::optional<GaussianTable>(); },
-          [](const scene::FittedPointer&) { return std::optional<GaussianTable>(); });
+      if (const auto* sum = std::get_if<scene::GaussianSum>(&scene.media[m].field))
+        tables[m] = make_gaussian_table(*sum);
     if (scene.geometry) shadows = std::make_unique<ShadowFinder>(*scene.geometry, 256);
   }
 

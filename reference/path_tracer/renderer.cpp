@@ -43,8 +43,7 @@ class PreparedTracer : public scene::Prepared {
  private:
   scene::Rendering render_kept(const scene::View& view, const scene::Execution& execution) const {
     scene::make_private_folder(execution.store->folder());
-    const std::string folder = (execution.store->folder() / "samples").string();
-    CachedRendering kept = render_cached(world_, view, folder, execution);
+    CachedRendering kept = render_cached(world_, view, samples_folder(*execution.store), execution);
     for (const std::string& note : kept.notes) execution.store->say(note);
     if (kept.not_kept) execution.store->lost(*kept.not_kept);
     return {std::move(kept.film), {{"paths", kept.seconds}}, kept.counters.named()};

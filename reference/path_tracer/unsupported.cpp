@@ -7,10 +7,6 @@
 
 #include "scene/geometry/brdf_table.h"
 #include "scene/math/random.h"
-#include "scene/media/fitted.h"
-#include "scene/media/fogmap.h"
-#include "scene/media/legendre_box.h"
-#include "scene/media/voxel_grid.h"
 
 namespace airlight::path_tracer {
 namespace {
@@ -40,16 +36,6 @@ double thinnest_depth(const scene::Medium& medium, int c) {
   return least > 0 ? medium.sigma_t[c] * least : 0;
 }
 
-// Number of terms that are summed to evaluate the density at a point, without a constant.
-double terms_of(const scene::DensityField& field) {
-  return scene::match(
-      field, [](const scene::Homogeneous&) { return 0.0; },
-      [](const scene::GaussianSum& sum) { return double(sum.gaussians.size()); },
-      [](const scene::GridPointer&) { return 0.0; }, [](const scene::FogmapPointer&) { return 0.0; },
-      [](const scene::LegendrePointer& series) { return double(series->coefficients().size()) / 8; },
-      [](const scene::FittedPointer&) { return 0.0; });
-}
-
 // Terms of density that a render sums up, to an order of magnitude: one for each Gaussian at each collision. Paths
 // scatter as often as absorption lets them, and no more often than twice the depth in the thinnest direction (the mean
 // chord's theorem: 4 int scattering dV / surface, which is exact for a slab).
@@ -66,7 +52,7 @@ double work(const scene::Scene& scene, const Options& options) {
     if (options.max_events >= 0) most = std::min(most, double(options.max_events));
     if (options.paths != Options::Paths::all) most = std::min(most, 1.0);  // they end after one scattering
     collisions += most;
-    terms += terms_of(medium.field);
+    terms += scene::terms(medium.field);
   }
   return double(scene.width) * scene.height * double(options.samples) * collisions * terms;
 }
@@ -82,16 +68,13 @@ Majorants majorants(const scene::Scene& scene, const Options& options) {
   if (!options.supergrid) return all;
   const double cells = std::pow(options.supergrid_cells > 0 ? options.supergrid_cells : 16, 3);
   for (const scene::Medium& medium : scene.media) {
-    const bool counted = scene::match(
-        medium.field, [](const scene::Homogeneous&) { return false; }, [](const scene::GaussianSum&) { return true; },
-        [&](const scene::GridPointer&) { return options.supergrid_cells > 0; },
-        [&](const scene::FogmapPointer&) { return options.supergrid_cells > 0; },
-        [](const scene::LegendrePointer&) { return true; },
-        [&](const scene::FittedPointer&) { return options.supergrid_cells > 0; });
+    // Grids and maps bring majorants of their own voxels and cells, unless the setting says how many.
+    const bool own = scene::grid_of(medium.field) || std::holds_alternative<scene::FogmapPointer>(medium.field);
+    const bool counted = !scene::homogeneous_density(medium.field) && (!own || options.supergrid_cells > 0);
     if (!counted) continue;
     ++all.media;
     all.cells += cells;
-    all.terms += cells * terms_of(medium.field);
+    all.terms += cells * scene::terms(medium.field);
   }
   return all;
 }

@@ -5,9 +5,6 @@
 
 #include "reference/ray_marcher/depth.h"
 #include "scene/base/place_error.h"
-#include "scene/media/fitted.h"
-#include "scene/media/fogmap.h"
-#include "scene/media/legendre_box.h"
 
 namespace airlight::ray_marcher {
 
@@ -15,17 +12,7 @@ bool too_fine_for_kernels(const scene::Scene& scene) { return scene::place_error
 
 double length_unit(const scene::Scene& scene) {
   double unit = infinity;
-  for (const scene::Medium& medium : scene.media)
-    unit = std::min(unit, scene::match(
-                              medium.field, [](const scene::Homogeneous&) { return infinity; },
-                              [](const scene::GaussianSum&) { return infinity; },
-                              [](const scene::GridPointer& grid) { return grid->voxel_size; },
-                              [](const scene::FogmapPointer& fog) { return fog->cell; },
-                              [](const scene::LegendrePointer& series) {
-                                const auto& n = series->shape();
-                                return series->box().size().cwiseQuotient(Vec3(n[0], n[1], n[2])).minCoeff();
-                              },
-                              [](const scene::FittedPointer& fitted) { return fitted->grid.voxel_size; }));
+  for (const scene::Medium& medium : scene.media) unit = std::min(unit, detail(medium.field));
   return unit == infinity ? 1 : unit;
 }
 

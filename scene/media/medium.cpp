@@ -43,6 +43,16 @@ bool outside(const Slab& slab, const Box& box) {
   return h.hi < slab.lo || h.lo > slab.hi;
 }
 
+GaussianSum moved_by(GaussianSum sum, const Vec3& by) {
+  for (Gaussian& g : sum.gaussians) g.center += by;
+  return sum;
+}
+
+VoxelGrid moved_by(VoxelGrid grid, const Vec3& by) {
+  grid.translation += by;
+  return grid;
+}
+
 double greatest(const VoxelGrid& grid) {
   return grid.values.empty() ? 0 : *std::max_element(grid.values.begin(), grid.values.end());
 }
@@ -142,6 +152,49 @@ std::string field_name(const DensityField& field) {
       field, [](const Homogeneous&) { return "homogeneous"; }, [](const GaussianSum&) { return "gaussians"; },
       [](const GridPointer&) { return "grid"; }, [](const FogmapPointer&) { return "fogmap"; },
       [](const LegendrePointer&) { return "legendre"; }, [](const FittedPointer&) { return "fitted"; });
+}
+
+double detail(const DensityField& field) {
+  return match(
+      field, [](const Homogeneous&) { return infinity; }, [](const GaussianSum&) { return infinity; },
+      [](const GridPointer& grid) { return grid->voxel_size; }, [](const FogmapPointer& fog) { return fog->cell; },
+      [](const LegendrePointer& series) {
+        const auto& n = series->shape();
+        return series->box().size().cwiseQuotient(Vec3(n[0], n[1], n[2])).minCoeff();
+      },
+      [](const FittedPointer& fitted) { return fitted->grid.voxel_size; });
+}
+
+double terms(const DensityField& field) {
+  return match(
+      field, [](const Homogeneous&) { return 0.0; },
+      [](const GaussianSum& sum) { return double(sum.gaussians.size()); }, [](const GridPointer&) { return 0.0; },
+      [](const FogmapPointer&) { return 0.0; },
+      [](const LegendrePointer& series) { return double(series->coefficients().size()) / 8; },
+      [](const FittedPointer&) { return 0.0; });
+}
+
+DensityField moved(const DensityField& field, const Vec3& by) {
+  return match(
+      field, [](const Homogeneous& uniform) -> DensityField { return uniform; },
+      [&](const GaussianSum& sum) -> DensityField { return moved_by(sum, by); },
+      [&](const GridPointer& grid) -> DensityField { return std::make_shared<const VoxelGrid>(moved_by(*grid, by)); },
+      [&](const FogmapPointer& fog) -> DensityField {
+        auto moved = std::make_shared<Fogmap>(*fog);
+        moved->x0 += by[0], moved->z0 += by[2];
+        return FogmapPointer(std::move(moved));
+      },
+      [&](const LegendrePointer& series) -> DensityField {
+        const Box& at = series->box();
+        return std::make_shared<const LegendreBox>(Box{at.lo + by, at.hi + by}, series->shape(),
+                                                   series->coefficients());
+      },
+      [&](const FittedPointer& fitted) -> DensityField {
+        Fitted moved = *fitted;
+        moved.gaussians = moved_by(moved.gaussians, by);
+        moved.grid = moved_by(moved.grid, by);
+        return std::make_shared<const Fitted>(std::move(moved));
+      });
 }
 
 const VoxelGrid* grid_of(const DensityField& field) {

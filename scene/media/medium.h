@@ -54,6 +54,12 @@ std::optional<double> homogeneous_density(const DensityField&);
 double greatest_density(const DensityField&);
 std::string field_name(
     const DensityField&);  // "homogeneous", "gaussians", "grid", "fogmap", "legendre", "fitted", as in scene files
+// [m] The smallest detail of samples that the field interpolates; infinity for a field without samples.
+double detail(const DensityField&);
+// Terms that are summed to evaluate the density at a point, without a constant.
+double terms(const DensityField&);
+// The field, displaced [m].
+DensityField moved(const DensityField&, const Vec3& by);
 // The voxels of a field whose density is trilinear between samples, a grid or fitted; null for the others.
 const VoxelGrid* grid_of(const DensityField&);
 

@@ -155,11 +155,14 @@ TEST_CASE("gates on what the machine lacks are skipped", "[driver]") {
 TEST_CASE("a JUnit report escapes what it quotes", "[driver]") {
   const airlight::TemporaryFolder folder;
   const auto file = folder.path() / "gates.xml";
-  write_junit(file.string(), {{"g/e: a", "a <= 1 & \"b\"", true, false},
-                              {"g/e: b", "b fails", false, false},
-                              {"g/e: c", "c is skipped: no <gpu>", false, true}});
+  std::vector<GateResult> gates{{"g/e: a", "a <= 1 & \"b\"", true, false},
+                                {"g/e: b", "b fails", false, false},
+                                {"g/e: c", "c is skipped: no <gpu>", false, true}};
+  gates[0].seconds = 1.25;
+  write_junit(file.string(), gates);
   const std::string text = airlight::read_bytes(file.string());
   CHECK_THAT(text, Catch::Contains("tests=\"3\" failures=\"1\" skipped=\"1\"") &&
+                       Catch::Contains("name=\"g/e: a\" time=\"1.250\"") &&
                        Catch::Contains("a &lt;= 1 &amp; &quot;b&quot;") &&
                        Catch::Contains("<skipped message=\"c is skipped: no &lt;gpu&gt;\"/>"));
 }

@@ -7,6 +7,8 @@
 #include <random>
 #include <set>
 
+#include "experiments/driver/agreement.h"
+#include "experiments/driver/expected_seconds.h"
 #include "tests/experiments/run_program.h"
 #include "tests/experiments/small_project.h"
 
@@ -77,6 +79,17 @@ std::string several_marchers() {
   return against_quadrature(methods);
 }
 
+std::string marchers_against_paths(int samples) {
+  std::string text = several_marchers();
+  const auto replace = [&](const std::string& old, const std::string& by) {
+    text.replace(text.find(old), old.size(), by);
+  };
+  replace("\"airlight\"", "\"mean\"");
+  replace("renderer = \"deterministic\"",
+          "renderer = \"path_tracer\"\nsettings = { max_order = 1, samples = " + std::to_string(samples) + " }");
+  return text;
+}
+
 TEST_CASE("a plan lists references, rows and what gathers them", "[schedule][cli]") {
   const SmallProject project(box_of_fog(12, 9), several_marchers());
   const std::string plan = "experiment plan g/e --root . --tasks 3 --least 0.01 --without-times ";
@@ -85,7 +98,7 @@ TEST_CASE("a plan lists references, rows and what gathers them", "[schedule][cli
   REQUIRE(told.code == 0);
   const auto json = nlohmann::json::parse(told.out);
   CHECK(json["rows"] == 4);
-  CHECK(json["without_record"] == nlohmann::json::array({"g/e"}));
+  CHECK(json["guessed"] == nlohmann::json::array({"g/e"}));
   REQUIRE(json["stages"].size() == 3);
   CHECK(json["stages"][0]["name"] == "references");
   CHECK_THAT(json["stages"][0]["tasks"][0]["commands"][0].get<std::string>(),
@@ -108,6 +121,71 @@ TEST_CASE("a plan lists references, rows and what gathers them", "[schedule][cli
                             "experiment plan g/e --root . --tasks 2 --slurm --json",
                             "experiment reference g/e nowhere --root .", "experiment reference g/e --root ."})
     CHECK(run(wrong, project).code == 2);
+}
+
+// One long reference, which three tasks share.
+TEST_CASE("a plan cuts a long reference into ranges of samples", "[schedule][cli]") {
+  std::string text = marchers_against_paths(448);
+  const SmallProject project(box_of_fog(12, 9), text);
+  REQUIRE(run("experiment run g/e --root . --cache once", project).code == 0);
+  const std::string plan = "experiment plan g/e --root . --tasks 3 --least 0.001 ";
+  const auto json = nlohmann::json::parse(run(plan + "--json", project).out);
+  CHECK(json["guessed"].empty());
+  CHECK(json["scaled_from_quick"].empty());
+  REQUIRE(json["stages"][0]["name"] == "references");
+  REQUIRE(json["stages"][1]["name"] == "films");
+  std::string commands;
+  for (const auto& task : json["stages"][0]["tasks"]) commands += task["commands"].dump();
+  for (const char* range : {"--samples 0..128", "--samples 128..256", "--samples 256..384", "--samples 384..448"})
+    CHECK_THAT(commands, Contains(range));
+  const double pixels = 12 * 9, doubles = 3 * (7 + 2 * 6 + 16), ranges = 4;
+  CHECK(json["bytes_of_ranges"] == ranges * pixels * doubles * 8);
+  const std::string reference = "experiment reference g/e one --root . ";
+  for (const char* range : {"384..448", "0..128", "256..384"})
+    REQUIRE(run(reference + "--samples " + range, project).code == 0);
+  REQUIRE(run(reference, project).code == 0);  // 128..256 as well
+  const auto figures = [&](const std::string& options) {
+    REQUIRE(run("experiment run g/e --root . " + options, project).code == 0);
+    return run("results g/e --root . --metric rel_l2 " + options.substr(0, options.find(" --cache")), project).out;
+  };
+  CHECK(figures("--results joined") == figures("--results alone --cache once"));
+  CHECK_THAT(run(reference + "--samples 0..64", project).out, Contains("was there"));
+  for (const char* wrong : {"--samples 64", "--samples 0..512 --cache none", "--samples 1..64 --cache none"})
+    CHECK(run(reference + wrong, project).code == 2);
+}
+
+// A film of 24 x 18 instead of 12 x 9, and twice as many samples.
+TEST_CASE("seconds of the profile paper come from the profile quick where it has no record", "[schedule]") {
+  std::string text = marchers_against_paths(64);
+  text +=
+      "[profile.paper]\nbudget = 0\nreference = { samples = 128 }\n"
+      "overrides = { \"film.width\" = 24, \"film.height\" = 18 }\n";
+  const SmallProject project(box_of_fog(12, 9), text);
+  REQUIRE(run("experiment run g/e --root .", project).code == 0);
+  const experiments::Folders folders{project.path(), project.path() / "results", project.path() / "results/cache"};
+  const auto paper = experiments::read_experiment(folders, "g/e", "paper");
+  const auto expected = experiments::expected_seconds(paper, folders, {{"one", {24 * 18, 128}}});
+  CHECK(expected.from == experiments::ExpectedSeconds::From::quick_record);
+  CHECK_FALSE(expected.guessed);
+  const auto quick = experiments::read_experiment(folders, "g/e", "quick");
+  const auto recorded = experiments::expected_seconds(quick, folders, {{"one", {12 * 9, 64}}});
+  CHECK(recorded.from == experiments::ExpectedSeconds::From::own_record);
+  CHECK(expected.references.at("one") == Approx(8 * recorded.references.at("one")));
+  REQUIRE(expected.once.size() == 4);
+  const auto rows = experiments::recorded_rows(project.path() / "results/g/e/run.json");
+  REQUIRE(rows.has_value());
+  double of_rows = 0;
+  for (const auto& row : *rows) of_rows += row.prepare_seconds + 2 * row.seconds.value;
+  const double of_each = (recorded.of_rows() - of_rows) / 4;
+  REQUIRE(of_each >= 0);
+  for (std::size_t i = 0; i < 4; ++i)
+    CHECK(expected.once[i] ==
+          Approx((*rows)[i].prepare_seconds + 4 * (*rows)[i].seconds.value + of_each).epsilon(1e-9));
+  // Without any record all rows are guessed.
+  std::filesystem::remove_all(project.path() / "results/g");
+  const auto guessed = experiments::expected_seconds(paper, folders, {});
+  CHECK(guessed.from == experiments::ExpectedSeconds::From::nothing);
+  CHECK(guessed.guessed);
 }
 
 TEST_CASE("GNU parallel runs a plan to the figures of one run", "[schedule][cli]") {

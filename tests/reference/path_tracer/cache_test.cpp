@@ -116,6 +116,50 @@ TEST_CASE("what an interrupted render has done is kept and completed", "[path_tr
   CHECK(whole.film.layers == direct(512).layers);
 }
 
+// As the tasks of a cluster do it: ranges in any order, one of them interrupted, one never computed.
+TEST_CASE("ranges kept by several tasks join to the bits of one render", "[path_tracer]") {
+  const std::string cache = folder("ranges");
+  const World world = world_of(1000);
+  CHECK(keep_range(world, view_of_ball(), cache, 512, 1000, {}));
+  int calls = 0;
+  scene::Execution stopping;
+  stopping.threads = 1;
+  stopping.progress = [&](double) { return ++calls < 3; };
+  CHECK_FALSE(keep_range(world, view_of_ball(), cache, 0, 256, stopping));
+  const std::string interrupted = range_file(cache, empty_accumulation(world, view_of_ball()).identity, 0, 256);
+  const auto paths = [&] { return read_range_file(interrupted).counters.paths; };
+  const auto before = paths();
+  CHECK(before < 256u * 200u);
+  CHECK(keep_range(world, view_of_ball(), cache, 0, 256, {}));
+  CHECK(paths() == 256u * 200u);
+  const auto whole = render_cached(world, view_of_ball(), cache, {});
+  CHECK(whole.notes.empty());
+  CHECK(whole.film.layers == direct(1000).layers);
+  CHECK(whole.counters.paths == 1000u * 200u);
+  CHECK_FALSE(std::filesystem::exists(interrupted));  // the picture's own file has its samples
+  CHECK(render_cached(world, view_of_ball(), cache, {}).found == 1000);
+  for (const auto& [begin, end] : {std::pair{64, 64}, {0, 1001}, {32, 64}, {0, 100}})
+    CHECK_THROWS_AS(keep_range(world, view_of_ball(), cache, begin, end, {}), Error);
+  Options adaptive;
+  adaptive.target_error = 0.01;
+  CHECK_THROWS_AS(keep_range(World(ball(), adaptive), view_of_ball(), cache, 0, 64, {}), Error);
+}
+
+TEST_CASE("a damaged range is computed again, and other samples do not disturb ranges", "[path_tracer]") {
+  const std::string cache = folder("damaged_range");
+  const World world = world_of(512);
+  keep_range(world, view_of_ball(), cache, 256, 512, {});
+  keep_range(world, view_of_ball(), cache, 64, 256, {});
+  render_cached(world_of(128), view_of_ball(), cache, {});  // 64..128 twice: the range is left alone
+  const std::string damaged = range_file(cache, empty_accumulation(world, view_of_ball()).identity, 256, 512);
+  std::filesystem::resize_file(damaged, std::filesystem::file_size(damaged) / 2);
+  const auto whole = render_cached(world, view_of_ball(), cache, {});
+  CHECK(whole.found == 128);
+  REQUIRE(whole.notes.size() == 1);
+  CHECK(whole.film.layers == direct(512).layers);
+  CHECK(whole.counters.paths == 512u * 200u);
+}
+
 TEST_CASE("frequent saving does not change the bits", "[path_tracer]") {
   const auto saved = render_cached(world_of(256), view_of_ball(), folder("often"), {}, 0.0);
   CHECK(saved.complete);
