@@ -10,7 +10,7 @@ Slices::Slices(int count, Interval range, Distribution distribution, double para
 
 double Slices::decode(double u) const {
   const auto [n, f] = range_;
-  double z = n;  // for GCC, which takes other distributions for possible. NOLINT(clang-analyzer-deadcode.DeadStores)
+  double z = n;
   switch (distribution_) {
     case Distribution::equal:
       z = n + (f - n) * u;
