@@ -14,6 +14,7 @@ uniform int cosine_at;                                 // bands of the clamped c
 uniform int point_bands_at, point_depths;              // g_l of a point light's PSF, [depth][l]; one depth: for all
 uniform int environment_bands_at, environment_depths;  // of an environment's
 uniform int environment_at;                            // its radiance L_lm, rgb
+uniform int environment_lambert_at;                    // times sqrt(4 pi/(2l+1)) and the band of the clamped cosine
 uniform float least_depth, greatest_depth;             // of the bands, even in log T
 vec3 weight_of(int l) { return row_at(weights_from + l); }
 
@@ -51,14 +52,17 @@ vec3 own_coefficient(Reflected r, int i) { return mix(rgb_at(r.low + 3 * i), rgb
 vec3 band_place(vec3 T, int depths) {
   return clamp(log(max(T, 1e-30) / least_depth) / log(greatest_depth / least_depth), 0, 1) * float(depths - 1);
 }
+float band(int at, int depths, int l, float place) {
+  int k = min(depths - 2, int(place)), low_at = at + k * SH_ORDER + l;
+  float low = tables[low_at];
+  return low + (place - float(k)) * (tables[low_at + SH_ORDER] - low);
+}
 // g_l at each channel's.
 vec3 band(int at, int depths, int l, vec3 place) {
   if (depths == 1) return vec3(tables[at + l]);
-  ivec3 k = min(ivec3(depths - 2), ivec3(place));
-  vec3 g;
-  for (int c = 0; c < 3; ++c) {
-    float low = tables[at + k[c] * SH_ORDER + l];
-    g[c] = low + (place[c] - float(k[c])) * (tables[at + (k[c] + 1) * SH_ORDER + l] - low);
+  vec3 g = vec3(band(at, depths, l, place.x));
+  if (place != place.xxx) {
+    g.yz = vec2(band(at, depths, l, place.y), band(at, depths, l, place.z));
   }
   return g;
 }
@@ -121,12 +125,13 @@ void reflect_environment(Reflected r, vec3 T, out vec3 direct, out vec3 scattere
             has_scattered != 0 ? zonal_factor(l) * band(environment_bands_at, environment_depths, l, place) : vec3(0));
   if (TRANSFER == 0 && (TABULATED == 0 || r.lambert)) {
     for (ShPair y = first_pair(r.z); y.m < sh_order; next_pair(y, r.z)) {
-      int at = environment_at + 3 * y.l * (y.l + 1);
-      vec3 light = y.plus * rgb_at(at + 3 * y.m) + y.minus * rgb_at(at - 3 * y.m);
-      vec3 value = zonal_factor(y.l) * tables[cosine_at + y.l] * r.diffuse * light;
+      int at = environment_lambert_at + 3 * y.l * (y.l + 1);
+      vec3 value = y.plus * rgb_at(at + 3 * y.m) + y.minus * rgb_at(at - 3 * y.m);
       direct += value;
       scattered += weight_of(y.l) * value;
     }
+    direct *= r.diffuse;
+    scattered *= r.diffuse;
   } else {
     for (int l = 0; l < sh_order; ++l) {
       vec3 value = reflect_band(r, l);

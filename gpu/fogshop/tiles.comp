@@ -1,12 +1,12 @@
 // Lists the Gaussians that any ray of a tile may meet, in their order: as methods/fogshop/airlight_pass.cpp, and not those behind
-// what ends all of its rays. A tile is one work group; each invocation tests a stretch of the Gaussians, twice.
+// what ends all of its rays. A tile is one work group; each invocation tests a stretch of the Gaussians.
 layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 #include "common/camera.glsl"
 #include "fogshop/fog.glsl"
 #include "fogshop/pixels.glsl"
 #include "fogshop/cone.glsl"
 
-layout(std430, binding = AT_TILE_LISTS) writeonly buffer TileLists { int tile_list[]; };  // of each tile its length first
+layout(std430, binding = AT_TILE_LISTS) buffer TileLists { int tile_list[]; };  // of each tile (fogshop/tile.glsl)
 uniform int tile_row;
 
 const int group_size = int(LOCAL_SIZE_X * LOCAL_SIZE_Y);
@@ -14,7 +14,7 @@ const int group_size = int(LOCAL_SIZE_X * LOCAL_SIZE_Y);
 shared uint farthest;  // bits of the greatest length of a ray; 0: no pixel is wanted
 
 void main() {
-  int list = int(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * (gaussian_count + 1);
+  int list = int(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * (2 * gaussian_count + 1);
   int local = int(gl_LocalInvocationIndex);
   ivec2 first_pixel = ivec2(gl_WorkGroupID.xy) * ivec2(LOCAL_SIZE_X, LOCAL_SIZE_Y) + ivec2(0, tile_row * int(LOCAL_SIZE_Y));
   ivec2 pixel = first_pixel + ivec2(gl_LocalInvocationID.xy);
@@ -43,12 +43,10 @@ void main() {
   Cone cone = cone_of(origin, axis, start, spread);
 
   int each = (gaussian_count + group_size - 1) / group_size;
-  int begin = local * each, end = min(begin + each, gaussian_count), count = 0;
+  int begin = local * each, end = min(begin + each, gaussian_count), count = 0, found_at = list + 1 + gaussian_count + begin;
   for (int i = begin; i < end; ++i)
-    if (touches(cone, gaussians[i], far)) ++count;
+    if (touches(cone, gaussians[i], far)) tile_list[found_at + count++] = i;
   int rank = rank_of(local, count), at = list + 1 + rank;
-  if (count > 0)
-    for (int i = begin; i < end; ++i)
-      if (touches(cone, gaussians[i], far)) tile_list[at++] = i;
+  for (int k = 0; k < count; ++k) tile_list[at + k] = tile_list[found_at + k];
   if (local == group_size - 1) tile_list[list] = rank + count;
 }

@@ -22,7 +22,7 @@ bool primitive_blocks(int primitive, bool own, dvec3 origin, dvec3 direction, do
   dvec3 p = cross(direction, ac), from = origin - a, q = cross(from, ab);
   double det = dot(ab, p);
   if (det == 0) return false;
-  double u = dot(from, p) / det, v = dot(direction, q) / det, t = dot(ac, q) / det;
+  double inverse = 1 / det, u = dot(from, p) * inverse, v = dot(direction, q) * inverse, t = dot(ac, q) * inverse;
   return u >= 0 && v >= 0 && u + v <= 1 && t > 0 && t < end;
 }
 
