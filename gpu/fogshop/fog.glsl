@@ -80,25 +80,27 @@ float erf_between(Place begin, Place end) {
   float d = begin.x >= 0 ? begin.tail - end.tail : end.x <= 0 ? end.tail - begin.tail : 2 - begin.tail - end.tail;
   return max(d, 0);
 }
-// Places at `begin` <= `end`. Leaves out tails that change neither 1 nor 2 in single precision: erfc(4) is 1.6e-8.
+// From `begin` on; leaves out tails that change neither 1 nor 2 in single precision: erfc(4) is 1.6e-8.
 const float no_tail = 4;
-void place_both(float begin, float end, out Place b, out Place e) {
-  b = Place(begin, 0);
-  e = Place(end, 0);
-  if (begin > -no_tail || end < no_tail) {
-    bool across = begin <= 0 && end >= 0;
-    if (!across || begin > -no_tail) {
-      b.tail = tail(begin);
+float erf_between(inout Place begin, float end) {
+  float d = 2;
+  begin.tail = 0;
+  if (begin.x > -no_tail || end < no_tail) {
+    bool across = begin.x <= 0 && end >= 0;
+    Place last = Place(end, 0);
+    if (!across || begin.x > -no_tail) {
+      begin.tail = tail(begin.x);
     }
     if (!across || end < no_tail) {
-      e.tail = tail(end);
+      last.tail = tail(end);
     }
+    d = erf_between(begin, last);
   }
+  return d;
 }
 float erf_between(float begin, float end) {
-  Place b, e;
-  place_both(begin, end, b, e);
-  return erf_between(b, e);
+  Place from = Place(begin, 0);
+  return erf_between(from, end);
 }
 
 // A Gaussian as a line meets it: its optical depth between two places is depth times erf_between.

@@ -52,25 +52,27 @@ vec3 own_coefficient(Reflected r, int i) { return mix(rgb_at(r.low + 3 * i), rgb
 vec3 band_place(vec3 T, int depths) {
   return clamp(log(max(T, 1e-30) / least_depth) / log(greatest_depth / least_depth), 0, 1) * float(depths - 1);
 }
-float band(int at, int depths, int l, float place) {
-  int k = min(depths - 2, int(place)), low_at = at + k * SH_ORDER + l;
-  float low = tables[low_at];
-  return low + (place - float(k)) * (tables[low_at + SH_ORDER] - low);
-}
-// g_l at each channel's.
-vec3 band(int at, int depths, int l, vec3 place) {
-  if (depths == 1) return vec3(tables[at + l]);
-  vec3 g = vec3(band(at, depths, l, place.x));
-  if (place != place.xxx) {
-    g.yz = vec2(band(at, depths, l, place.y), band(at, depths, l, place.z));
+// Keeps the weights of all bands: g_l at each channel's depth times the zonal factor.
+void keep_weights(int at, int depths, vec3 T) {
+  vec3 place = band_place(T, depths);
+  ivec3 k = min(ivec3(max(depths - 2, 0)), ivec3(place)), low_at = at + k * SH_ORDER;
+  int step_ = depths > 1 ? SH_ORDER : 0;
+  vec3 share = place - vec3(k);
+  bool alike = place == place.xxx;
+  for (int l = 0; l < sh_order; ++l) {
+    vec3 g = vec3(mix(tables[low_at.x + l], tables[low_at.x + step_ + l], share.x));
+    if (!alike) {
+      g.y = mix(tables[low_at.y + l], tables[low_at.y + step_ + l], share.y);
+      g.z = mix(tables[low_at.z + l], tables[low_at.z + step_ + l], share.z);
+    }
+    set_row(weights_from + l, zonal_factor(l) * g);
   }
-  return g;
 }
 
 // Reflected light that the medium at depth T from a light scatters onto the surface, per unit of I/d^2 and albedo: Eq. 25.
 vec3 reflect_point(Reflected r, vec3 to_light, vec3 T) {
-  vec3 place = band_place(T, point_depths), sum = vec3(0);
-  for (int l = 0; l < sh_order; ++l) set_row(weights_from + l, zonal_factor(l) * band(point_bands_at, point_depths, l, place));
+  vec3 sum = vec3(0);
+  keep_weights(point_bands_at, point_depths, T);
 #if TRANSFER
   for (ShPair y = first_pair(to_light); y.m < sh_order; next_pair(y, to_light)) {
     int i = y.l * (y.l + 1);
@@ -118,11 +120,12 @@ vec3 reflect_band(Reflected r, int l) {
 // The environment's light that arrives and is reflected, and that which the medium scattered on the way (per unit of albedo):
 // Eq. 27 for the average depth T.
 void reflect_environment(Reflected r, vec3 T, out vec3 direct, out vec3 scattered) {
-  vec3 place = band_place(T, environment_depths);
   direct = scattered = vec3(0);
-  for (int l = 0; l < sh_order; ++l)
-    set_row(weights_from + l,
-            has_scattered != 0 ? zonal_factor(l) * band(environment_bands_at, environment_depths, l, place) : vec3(0));
+  if (has_scattered != 0) {
+    keep_weights(environment_bands_at, environment_depths, T);
+  } else {
+    for (int l = 0; l < sh_order; ++l) set_row(weights_from + l, vec3(0));
+  }
   if (TRANSFER == 0 && (TABULATED == 0 || r.lambert)) {
     for (ShPair y = first_pair(r.z); y.m < sh_order; next_pair(y, r.z)) {
       int at = environment_lambert_at + 3 * y.l * (y.l + 1);

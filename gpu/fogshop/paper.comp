@@ -33,10 +33,9 @@ void main() {
       if (c.met) {
         c.depth = depth_beside(g, origin, direction);
         // Eq. 10, clamped; up to the middle, where the error function is 0.
-        Place first, last;
-        place_both(-g.a * c.middle, g.a * (end - c.middle), first, last);
-        float whole = c.depth * erf_between(first, last), t = clamp(c.middle, 0, end);
-        float before = c.middle <= 0 ? 0 : c.middle >= end ? whole : c.depth * (1 - first.tail);
+        c.start = Place(-g.a * c.middle, 0);
+        float whole = c.depth * erf_between(c.start, g.a * (end - c.middle)), t = clamp(c.middle, 0, end);
+        float before = c.middle <= 0 ? 0 : c.middle >= end ? whole : c.depth * (1 - c.start.tail);
 #if NOISE
         whole = bent_depth(g, c, origin, direction, end);
 #endif
@@ -69,8 +68,10 @@ void main() {
     }
   }
   airlight *= extinction_ratio / (4 * pi);
-  for (int l = 0; l < light_count && constant > 0; ++l)  // Eqs. 16 and 17
-    airlight += lights[l].intensity * exp(-extinction_ratio * segment_depth[to_lights + l]) *
-                homogeneous_airlight(light_from_ray(lights[l], origin, direction), end);
+  if (light_count > 0 && constant > 0) {
+    for (int l = 0; l < light_count; ++l)  // Eqs. 16 and 17
+      airlight += lights[l].intensity * decay(segment_depth[to_lights + l]) *
+                  homogeneous_airlight(light_from_ray(lights[l], origin, direction), end);
+  }
   if (visible) pixels[place_of(pixel)] = vec4(airlight * albedo, depth);
 }

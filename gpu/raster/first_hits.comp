@@ -95,11 +95,11 @@ void main() {
   dvec3 turned_origin = dvec3(origin[ray.axis.x], origin[ray.axis.y], origin[ray.axis.z]);
   dvec3 shear = dvec3(direction[ray.axis.x], direction[ray.axis.y], 1) / direction[ray.axis.z];
 #if RESUMES
-  for (int leaves = 0; leaves < leaves_at_once && node < tree_nodes; ++leaves) {
+  for (int leaves = 0; leaves < leaves_at_once && node < tree_end; ++leaves) {
 #else
-  while (node < tree_nodes) {
+  while (node < tree_end) {
 #endif
-    int leaf = next_leaf(ray, node, tree_nodes, best.t * (1 + 1e-6));
+    int leaf = next_leaf(ray, node, tree_end, best.t * (1 + 1e-6));
     for (int bits = may_be_met(ray, leaf); bits != 0; bits &= bits - 1) {
       int triangle = triangle_at((leaf >> 3) + findLSB(bits));
       keep_nearer(best, meet_triangle(triangle, ray.axis, shear, turned_origin), triangle);
@@ -108,7 +108,7 @@ void main() {
 #if RESUMES
   unfinished[kept] = node;
   unfinished[kept + 1] = best.primitive;
-  if (node < tree_nodes && dispatch + 1 < dispatches)
+  if (node < tree_end && dispatch + 1 < dispatches)
     for (int a = 0; a < 3; ++a) unfinished[3 * (dispatch + 1) + a] = int(gl_NumWorkGroups[a]);
 #endif
   distances[first_ray + place] = best.t;

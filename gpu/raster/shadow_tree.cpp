@@ -20,13 +20,13 @@ struct ShadowTree::Data {
 
 namespace {
 
-constexpr int node_words = 22;  // of raster/tree.glsl
+constexpr int node_entries = 11, node_words = 2 * node_entries;  // of raster/tree.glsl
 
 // For an octant of directions (bit a: towards lower coordinates): the child that comes first, or the leaf, and the node that
 // follows when `node` is done with.
 void link(const std::vector<OccluderNode>& nodes, int octant, int node, int next, std::vector<int>& words) {
   int* links = &words[node_words * node + 6 + 2 * octant];
-  links[1] = next;
+  links[1] = node_entries * next;
   if (nodes[node].leaf >= 0) {
     links[0] = -1 - nodes[node].leaf;
     return;
@@ -34,7 +34,7 @@ void link(const std::vector<OccluderNode>& nodes, int octant, int node, int next
   const int code = -1 - nodes[node].leaf;
   int first = node + 1, second = code >> 2;
   if (octant >> (code & 3) & 1) std::swap(first, second);
-  links[0] = first;
+  links[0] = node_entries * first;
   link(nodes, octant, first, second, words);
   link(nodes, octant, second, next, words);
 }
@@ -79,7 +79,7 @@ ShadowTree::ShadowTree(Context& context, const Data& data)
 
 void ShadowTree::bind(LinkedProgram& program) const {
   tree_.bind(14);
-  program.set("tree_nodes", nodes_);
+  program.set("tree_end", node_entries * nodes_);
   program.set_double("tree_middle", middle_);
   program.set("tree_reach", reach_);
   program.set("solid_count", solids_);

@@ -31,8 +31,8 @@ bool tree_blocks(int own, dvec3 point, dvec3 to_light, double end) {
     if (triangle_count + i != own && primitive_blocks(triangle_count + i, false, point, to_light, end)) return true;
   TreeRay ray = tree_ray_of(vec3(point - tree_middle), vec3(to_light));
   float until = float(end) * (1 + 1e-6);
-  for (int node = 0; node < tree_nodes;) {
-    int leaf = next_leaf(ray, node, tree_nodes, until);
+  for (int node = 0; node < tree_end;) {
+    int leaf = next_leaf(ray, node, tree_end, until);
     for (int bits = may_be_met(ray, leaf); bits != 0; bits &= bits - 1) {
       int triangle = triangle_at((leaf >> 3) + findLSB(bits));
       if (triangle != own && primitive_blocks(triangle, false, point, to_light, end)) return true;

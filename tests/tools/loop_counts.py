@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""tests/tools/loop_counts.py OUT [--program FILE]: how often the loops of the GPU side go round, in ten scenes at 800 x 600.
+"""tests/tools/loop_counts.py OUT [--program FILE]: how often the loops of the GPU side go round, in the scenes of the papers'
+tables of times, at 800 x 600.
 
-Writes OUT/marked/SHADER, the shaders with every condition of a loop counted, renders Tables 1 and 2 with them (any driver, llvmpipe
+Writes OUT/marked/SHADER, the shaders with every condition of a loop counted, renders the scenes with them (any driver, llvmpipe
 too), and reads the counts from the picture: the pixels of a block of 8 x 4, what a warp is on a GPU, all show the same three loops'.
 A hash of the block chooses them, so that the blocks of a loop lie all over the picture.
 OUT/loops.csv: of each scene, shader and loop the mean by invocation, and that of the greatest in each block. OUT/dump/SCENE holds the
@@ -20,7 +21,23 @@ WIDTH, HEIGHT, SCALE = 800, 600, 1024
 FOGSHOP = [("fogshop/table1/" + name, name) for name in ("gargoyle", "box", "terrain", "city", "motorcycle")]
 PLANES = [("shadow_planes/" + file, name) for file, name in
           (("fig8a", "pens"), ("fig8b", "media"), ("fig8c", "columns"), ("fig1", "nave"), ("fig7_shade", "Figure 7"))]
-OPTIONS = {"fogshop_gpu": ["--set", "variant=paper", "--set", "reflectance=npsf"], "shadow_planes_gpu": []}
+OPTIONS = {"fogshop_gpu": ["--set", "variant=paper", "--set", "reflectance=npsf"], "shadow_planes_gpu": [], "wavelet_fog_gpu": []}
+SPLINES = {"Haar": 0, "linear": 1, "quadratic": 2}
+
+
+def wavelet_fog():
+    """Tables 1 to 3 of Giroud and Biri 2010: scene, title and options of each entry."""
+    def entry(table, spline, size, *settings):
+        sets = [word for setting in settings for word in ("--set", setting.replace(" ", "="))]
+        return ("wavelet_fog/table_%d" % size, " ".join([f"{table}: {spline} {size}", *settings[1:]]),
+                ["--override", f"medium.0.degree={SPLINES[spline]}", *sets])
+    return ([entry(1, spline, size, "variant direct") for spline in SPLINES for size in (16, 32, 64)] +
+            [entry(2, "linear", 64, "variant paper", f"levels {levels}", f"mu {mu}")
+             for levels in (1, 2, 3) for mu in ("1", "0.8", "0.6", "0.4", "0.2", "0")] +
+            [entry(3, spline, size, "variant paper", f"levels {levels}", "mu 1")
+             for spline, size in (("linear", 16), ("linear", 32), ("quadratic", 32)) for levels in (1, 2, 3)])
+
+
 # Where a shader's counts go in the picture: statements replaced (by file), and the layer that then shows them.
 SHOWN = {
     "raster/first_hits.comp": {"fogshop_gpu": "fogshop/surfaces.comp", "shadow_planes_gpu": "shadow_planes/shade.comp"},
@@ -34,6 +51,9 @@ SHOWN = {
                                  "airlight"),
     "shadow_planes/shade.comp": ("  lit_pixels[place] = lit;",
                                  "  lit.airlight.rgb += trips_shown(pixel);\n  lit_pixels[place] = lit;", "airlight"),
+    "wavelet_fog/columns.comp": ("    depths[place] = part + 1 < parts ? vec4(before.rgb, sum) : vec4(before.rgb + depth_of(sum), 0);",
+                                 "    depths[place] = vec4((part > 0 ? before.rgb : vec3(0)) + trips_shown(at), before.w * 0 + sum * 0);",
+                                 "mean"),
 }
 
 
@@ -135,6 +155,10 @@ def shown(texts, target, method):
         texts[by] = replaced(texts[by], "  lit_pixels[place] = lit;",
                              "  lit.airlight.rgb = vec3(float(shown));\n  lit_pixels[place] = lit;")
         return "airlight"
+    if target == "wavelet_fog/columns.comp":
+        texts["wavelet_fog/composition.comp"] = replaced(texts["wavelet_fog/composition.comp"],
+                                                         "has_fog != 0 ? depths[place].rgb : vec3(0), behind);",
+                                                         "vec3(0), depths[place].rgb);")
     old, new, layer = SHOWN[target]
     texts[target] = replaced(texts[target], old, "\n#if COUNT_TRIPS\n" + new + "\n#else\n" + old + "\n#endif\n")
     return layer
@@ -187,8 +211,8 @@ def main():
         sys.exit(f"loop_counts: there is no program at {arguments.program}; run scripts/build first")
     out = arguments.out.resolve()
     rows, failed = [], 0
-    for method, scenes in (("fogshop_gpu", FOGSHOP), ("shadow_planes_gpu", PLANES)):
-        targets = [name for name in SHOWN if name.startswith(("raster/", method.removesuffix("_gpu")))]
+    for method, scenes in (("fogshop_gpu", FOGSHOP), ("shadow_planes_gpu", PLANES), ("wavelet_fog_gpu", wavelet_fog())):
+        targets = [name for name in SHOWN if name.startswith(method.removesuffix("_gpu")) or method in SHOWN[name]]
         for target in targets:
             texts, loops = marked(target)
             layer = shown(texts, target, method)
@@ -196,7 +220,7 @@ def main():
             for name, text in texts.items():
                 (folder / name).parent.mkdir(parents=True, exist_ok=True)
                 (folder / name).write_text(text)
-            for scene, title in scenes:
+            for scene, title, *options in scenes:
                 if arguments.only not in title + " " + target:
                     continue
                 if target == "fogshop/environment.comp" and title in ("gargoyle", "box"):  # lit by points
@@ -205,7 +229,7 @@ def main():
                 environment = dict(os.environ, AIRLIGHT_SHADERS=str(folder), AIRLIGHT_DUMP_SHADERS=str(out / "dump" / title))
                 (out / "dump" / title).mkdir(parents=True, exist_ok=True)
                 command = [arguments.program, "render", str(ROOT / "experiments/scenes" / (scene + ".toml")), "-m", method,
-                           *OPTIONS[method], "--override", f"film.width={WIDTH}", "--override", f"film.height={HEIGHT}",
+                           *OPTIONS[method], *(options[0] if options else []), "--override", f"film.width={WIDTH}", "--override", f"film.height={HEIGHT}",
                            "-o", str(image)]
                 result = subprocess.run(command, env=environment, capture_output=True, text=True)
                 if result.returncode:
