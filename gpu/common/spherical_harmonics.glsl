@@ -17,9 +17,10 @@ ShPair pair_at(int m, float q, float diagonal, vec2 turn) {
   return ShPair(m, m, q * turn.x, q * turn.y, q, 0, diagonal, turn);
 }
 ShPair first_pair(vec3 direction) { return pair_at(0, 0.282094791773878, 0.0795774715459477, vec2(1, 0)); }
-void next_pair(inout ShPair y, vec3 direction) {
+// Of the bands below `order` alone.
+void next_pair(inout ShPair y, vec3 direction, int order) {
   float l = float(++y.l), m = float(y.m);
-  if (y.l < sh_order) {
+  if (y.l < order) {
     // P_l = f_l z P_(l-1) - f_l / f_(l-1) P_(l-2), f_l = sqrt((4 l^2 - 1) / (l^2 - m^2)).
     float square = (l - m) * (l + m) / (4 * l * l - 1), factor = inversesqrt(square);
     float q = factor * (direction.z * y.q - y.before);
@@ -33,3 +34,4 @@ void next_pair(inout ShPair y, vec3 direction) {
     y = pair_at(y.m + 1, sign * sqrt(2 * diagonal), diagonal, turn);
   }
 }
+void next_pair(inout ShPair y, vec3 direction) { next_pair(y, direction, sh_order); }

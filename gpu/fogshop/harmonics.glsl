@@ -127,11 +127,15 @@ void reflect_environment(Reflected r, vec3 T, out vec3 direct, out vec3 scattere
     for (int l = 0; l < sh_order; ++l) set_row(weights_from + l, vec3(0));
   }
   if (TRANSFER == 0 && (TABULATED == 0 || r.lambert)) {
-    for (ShPair y = first_pair(r.z); y.m < sh_order; next_pair(y, r.z)) {
-      int at = environment_lambert_at + 3 * y.l * (y.l + 1);
-      vec3 value = y.plus * rgb_at(at + 3 * y.m) + y.minus * rgb_at(at - 3 * y.m);
-      direct += value;
-      scattered += weight_of(y.l) * value;
+    // The clamped cosine has no odd bands but the first.
+    int order = sh_order > 2 ? sh_order - 1 | 1 : sh_order;
+    for (ShPair y = first_pair(r.z); y.m < order; next_pair(y, r.z, order)) {
+      if ((y.l & 1) == 0 || y.l == 1) {
+        int at = environment_lambert_at + 3 * y.l * (y.l + 1);
+        vec3 value = y.plus * rgb_at(at + 3 * y.m) + y.minus * rgb_at(at - 3 * y.m);
+        direct += value;
+        scattered += weight_of(y.l) * value;
+      }
     }
     direct *= r.diffuse;
     scattered *= r.diffuse;

@@ -70,7 +70,7 @@ void main() {
   airlight *= extinction_ratio / (4 * pi);
   if (light_count > 0 && constant > 0) {
     for (int l = 0; l < light_count; ++l)  // Eqs. 16 and 17
-      airlight += lights[l].intensity * decay(segment_depth[to_lights + l]) *
+      airlight += lights[l].intensity * exp(-extinction_ratio * segment_depth[to_lights + l]) *
                   homogeneous_airlight(light_from_ray(lights[l], origin, direction), end);
   }
   if (visible) pixels[place_of(pixel)] = vec4(airlight * albedo, depth);

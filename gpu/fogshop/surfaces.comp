@@ -70,7 +70,7 @@ void main() {
         float d = float(distance_), cosine = float(dot(normal, to_light));
         vec3 reflectance = vec3(0);
         if (cosine > 0) {
-          reflectance = brdf(material, n, vec3(to_light), to_view);
+          reflectance = brdf(materials[surface], n, vec3(to_light), to_view);  // read again: it would take registers in the tree
           if (any(greaterThan(reflectance, vec3(0))) &&
               in_shadow(primitive, point + nudge * normal, to_light, distance_))
             reflectance = vec3(0);

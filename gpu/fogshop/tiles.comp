@@ -12,6 +12,7 @@ uniform int tile_row;
 const int group_size = int(LOCAL_SIZE_X * LOCAL_SIZE_Y);
 #include "fogshop/ranks.glsl"
 shared uint farthest;  // bits of the greatest length of a ray; 0: no pixel is wanted
+shared uint spread_bits, start_bits;
 
 void main() {
   int list = int(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * (2 * gaussian_count + 1);
@@ -19,7 +20,7 @@ void main() {
   ivec2 first_pixel = ivec2(gl_WorkGroupID.xy) * ivec2(LOCAL_SIZE_X, LOCAL_SIZE_Y) + ivec2(0, tile_row * int(LOCAL_SIZE_Y));
   ivec2 pixel = first_pixel + ivec2(gl_LocalInvocationID.xy);
   ivec2 last_pixel = min(first_pixel + ivec2(LOCAL_SIZE_X, LOCAL_SIZE_Y), ivec2(grid_width, grid_height));
-  if (local == 0) farthest = 0;
+  if (local == 0) farthest = spread_bits = start_bits = 0;
   barrier();
   // Positive floats are in the order of their bits; a ray of length 0 is wanted too.
   if (is_computed(pixel)) atomicMax(farthest, floatBitsToUint(max(ray_length(pixel), 1e-37)));
@@ -32,15 +33,15 @@ void main() {
   vec2 first = float(film_step) * vec2(first_pixel), last = float(film_step) * vec2(last_pixel);
   vec3 origin, axis;
   camera_ray(0.5 * (first + last), origin, axis);
-  // How far other rays start from the middle one, and spread per metre.
-  float start = 0, spread = 0;
-  for (int corner = 0; corner < 4; ++corner) {
-    vec3 o, d;
-    camera_ray(vec2((corner & 1) != 0 ? last.x : first.x, (corner & 2) != 0 ? last.y : first.y), o, d);
-    start = max(start, length(o - origin));
-    spread = max(spread, length(d - axis));
+  // How far other rays start from the middle one, and spread per metre: the corners' most.
+  vec3 o, d;
+  camera_ray(vec2((local & 1) != 0 ? last.x : first.x, (local & 2) != 0 ? last.y : first.y), o, d);
+  if (local < 4) {
+    atomicMax(start_bits, floatBitsToUint(length(o - origin)));
+    atomicMax(spread_bits, floatBitsToUint(length(d - axis)));
   }
-  Cone cone = cone_of(origin, axis, start, spread);
+  barrier();
+  Cone cone = cone_of(origin, axis, uintBitsToFloat(start_bits), uintBitsToFloat(spread_bits));
 
   int each = (gaussian_count + group_size - 1) / group_size;
   int begin = local * each, end = min(begin + each, gaussian_count), count = 0, found_at = list + 1 + gaussian_count + begin;

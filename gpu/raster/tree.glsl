@@ -17,7 +17,7 @@ uniform float tree_reach;   // [m] greatest coordinate, from the middle
 
 struct TreeRay {
   vec3 origin, inverse;  // from the middle [m]; 1 over the direction
-  vec3 before;           // where the rounding before 0 of each axis is on the ray [m]
+  vec3 before, behind;   // where 0 of each axis is on the ray, less and more the rounding [m]
   float rounding;        // more than that of places [m]
   int octant;            // bit a: towards lower coordinates
   ivec3 axis;            // z: the largest component of the direction; handedness kept
@@ -34,6 +34,7 @@ TreeRay tree_ray_of(vec3 origin, vec3 direction) {
   ray.octant = int(ray.inverse.x < 0) | int(ray.inverse.y < 0) << 1 | int(ray.inverse.z < 0) << 2;
   ray.rounding = 1e-6 * (max(m.x, max(m.y, m.z)) + tree_reach);
   ray.before = (-ray.rounding - origin) * ray.inverse;
+  ray.behind = (ray.rounding - origin) * ray.inverse;
   int z = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
   ray.axis = ivec3((z + 1) % 3, (z + 2) % 3, z);
   if (direction[z] < 0) ray.axis.xy = ray.axis.yx;
@@ -50,7 +51,7 @@ vec2 floats_of(int place) { return uintBitsToFloat(unpackDouble2x32(tree[place])
 // Between the origin and `until` [m]?
 bool meets_box(TreeRay ray, int node, float until) {
   vec2 a = floats_of(node), b = floats_of(node + 1), c = floats_of(node + 2);
-  vec3 s = vec3(a, b.x) * ray.inverse + ray.before, e = (vec3(b.y, c) + 2 * ray.rounding) * ray.inverse + ray.before;
+  vec3 s = vec3(a, b.x) * ray.inverse + ray.before, e = vec3(b.y, c) * ray.inverse + ray.behind;
   vec3 first = min(s, e), last = max(s, e);
   return max(max(first.x, first.y), max(first.z, 0)) <= min(min(last.x, last.y), min(last.z, until));
 }
