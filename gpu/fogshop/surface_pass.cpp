@@ -47,7 +47,8 @@ std::string horner() {
     return sum;
   };
   return series(airlight::fogshop::CellPolynomial::degree, 'x', [&](int left) {
-    return series(left, 'y', [&](int rest) { return series(rest, 'z', [&](int) { return fmt::format("c({})", k++); }); });
+    return series(left, 'y',
+                  [&](int rest) { return series(rest, 'z', [&](int) { return fmt::format("c({})", k++); }); });
   });
 }
 
