@@ -116,7 +116,7 @@ void FogOnDevice::compute(const Grid& grid, Frame& frame) {
   const bool hands_on = sliced() || needs_.sky_volume;
   const RayValues values{o.slices, sliced() ? model_.scattered_lights() : 0};
   const int fields = hands_on ? values.fields() : 0;
-  const std::size_t row_of_lists = std::size_t(columns) * (n + 1) * 4,
+  const std::size_t row_of_lists = std::size_t(columns) * (2 * n + 1) * 4,
                     row_of_rays = std::size_t(fields) * grid.width() * tile * 4;
   const std::size_t most = std::min(strip_bytes, context_.limits().storage_block);
   const int height = int(std::clamp<std::size_t>(most / std::max(row_of_lists, row_of_rays), 1, rows));
