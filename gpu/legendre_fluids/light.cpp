@@ -349,8 +349,10 @@ scene::Rendering PreparedLightGpu::render_once(const View& view, const Execution
   if (next_) result.counters.merge(next_->counters("next_"));
   result.counters["rays"] = double(pixels);
   result.counters["negative_share"] = negative_share_;
-  result.film.metadata = {
-      {"method", "legendre_fluids_gpu"}, {"settings", given_.canonical()}, {"scene", scene_->name}, {"hash", scene_->hash}};
+  result.film.metadata = {{"method", "legendre_fluids_gpu"},
+                          {"settings", given_.canonical()},
+                          {"scene", scene_->name},
+                          {"hash", scene_->hash}};
   if (scene::has_environment(*scene_) && !lit_.lights.empty())
     result.film.metadata["warning"] =
         fmt::format("legendre_fluids_gpu: {} directional lights stand for each environment (environment_directions)",

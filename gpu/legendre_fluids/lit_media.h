@@ -43,7 +43,7 @@ class LightMediaOnDevice {
   const airlight::legendre_fluids::LitMedia& media_;
   Definitions definitions_;
   Buffer densities_, rule_;
-  bool flows_ = false;  // a density is a flow's
+  bool flows_ = false;             // a density is a flow's
   std::unique_ptr<Buffer> least_;  // of take(), and its program
   Program* taking_ = nullptr;
 };

@@ -107,10 +107,10 @@ scene::Pixel PreparedRays::pixel(const Ray& ray, RayVisits& visits) const {
   if (scatters()) pixel.airlight = rays().airlight(ray, end.t, visits);
   if (behind_kept() && pixel.transmittance.maxCoeff() > 0)
     pixel.surface =
-        pixel.transmittance *
-        scene::end_radiance(*scene_, ray, end, rays().media().lights, [&](const scene::Incident&, std::size_t l) -> Rgb {
-          return (-rays().media().light_depth(end.hit->position, l)).exp();
-        });
+        pixel.transmittance * scene::end_radiance(*scene_, ray, end, rays().media().lights,
+                                                  [&](const scene::Incident&, std::size_t l) -> Rgb {
+                                                    return (-rays().media().light_depth(end.hit->position, l)).exp();
+                                                  });
   // 1 - exp(-depth) without cancelling: thin fog has a depth of 1e-8.
   if (ambient_kept())
     pixel.ambient = scene_->ambient_in_scatter * depth.unaryExpr([](double d) { return -std::expm1(-d); });

@@ -39,8 +39,8 @@ DEVICE_TEST_CASE("legendre fluids on the device: the next frame is the frame mad
 
 // Coefficients of a frame go up into the buffer that is there, and nothing else does.
 DEVICE_TEST_CASE("legendre fluids on the device: a next frame uploads coefficients alone", "[gpu][legendre_fluids]") {
-  auto still = std::make_shared<Scene>(
-      *lit_scene(smoke(random_density({4, 4, 4}, 3), 1), oblique_light, oblique_view, 8, 6));
+  auto still =
+      std::make_shared<Scene>(*lit_scene(smoke(random_density({4, 4, 4}, 3), 1), oblique_light, oblique_view, 8, 6));
   still->media.push_back(still->media[0]);
   become(still->media[1], 4);
   finish(*still);

@@ -72,12 +72,18 @@ inline const Change changes[] = {
     {"a density below 0", [](Scene& s) { become(s.media[0], 8, 2); }, all_lights, false},
     {"denser", [](Scene& s) { s.media[0].sigma_t *= 1.5; }, all_lights, true},
     {"another albedo", [](Scene& s) { s.media[0].albedo *= 0.5; }, 0, true},
-    {"another region", [](Scene& s) { s.media[0].region = Box{Point3(-0.7, -1, -1), Point3(1, 1, 0.9)}; }, all_lights,
-     false},
+    {"another region",
+     [](Scene& s) {
+       s.media[0].region = Box{Point3(-0.7, -1, -1), Point3(1, 1, 0.9)};
+     },
+     all_lights, false},
     {"one medium less", [](Scene& s) { s.media.pop_back(); }, 0, false},
     {"no medium", [](Scene& s) { s.media.clear(); }, 0, false},
     {"one medium more",
-     [](Scene& s) { s.media.push_back(smoke(random_density({3, 3, 3}, 5, 1, high_box), 0.4)); }, all_lights, false},
+     [](Scene& s) {
+       s.media.push_back(smoke(random_density({3, 3, 3}, 5, 1, high_box), 0.4));
+     },
+     all_lights, false},
     {"a floor that sinks", [](Scene& s) { std::get<scene::Plane>(s.surfaces[0].shape).point[1] -= 0.1; }, 0, false},
     {"no ball", [](Scene& s) { s.surfaces.pop_back(); }, 0, false},
     {"no surfaces", [](Scene& s) { s.surfaces.clear(); }, 0, false},
