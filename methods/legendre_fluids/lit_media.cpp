@@ -36,18 +36,6 @@ double column(const scene::LegendreBox& field, const Ray& ray, Interval t) {
   return std::max(0.0, 0.5 * t.length() * sum);
 }
 
-// Do two media have one density: is field_within_region equal for both?
-bool same_density(const scene::Medium& a, const scene::Medium& b) {
-  scene::Medium other = b;
-  other.sigma_t = a.sigma_t, other.albedo = a.albedo, other.phase = a.phase;
-  const auto *x = std::get_if<scene::LegendrePointer>(&a.field), *y = std::get_if<scene::LegendrePointer>(&b.field);
-  // A scene that was read again has other fields of equal contents.
-  if (x && y && (*x)->shape() == (*y)->shape() && (*x)->box().lo == (*y)->box().lo &&
-      (*x)->box().hi == (*y)->box().hi && (*x)->coefficients() == (*y)->coefficients())
-    other.field = a.field;
-  return scene::same_medium(a, other);
-}
-
 }  // namespace
 
 std::string unsupported_field(const std::vector<scene::Medium>& media, std::size_t i) {
@@ -80,6 +68,16 @@ scene::LegendrePointer field_within_region(const scene::Medium& medium) {
     part[a] = scene::legendre_restriction(field->shape()[a], lo[Eigen::Index(a)], hi[Eigen::Index(a)]);
   return std::make_shared<const scene::LegendreBox>(
       inside, field->shape(), scene::along_axes(part[0], part[1], part[2], field->coefficients(), field->shape()));
+}
+
+bool same_density(const scene::Medium& a, const scene::Medium& b) {
+  scene::Medium other = b;
+  other.sigma_t = a.sigma_t, other.albedo = a.albedo, other.phase = a.phase;
+  const auto *x = std::get_if<scene::LegendrePointer>(&a.field), *y = std::get_if<scene::LegendrePointer>(&b.field);
+  if (x && y && (*x)->shape() == (*y)->shape() && (*x)->box().lo == (*y)->box().lo &&
+      (*x)->box().hi == (*y)->box().hi && (*x)->coefficients() == (*y)->coefficients())
+    other.field = a.field;
+  return scene::same_medium(a, other);
 }
 
 double negative_share(const scene::TensorShape& shape, const Eigen::VectorXd& coefficients) {

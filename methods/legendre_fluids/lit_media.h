@@ -47,6 +47,8 @@ std::vector<bool> shadowed_lights(const scene::Scene&, const LitMedia&);
 std::string unsupported_field(const std::vector<scene::Medium>&, std::size_t i);
 // A medium that is one, as such: its box is what of the field's lies in the medium's region; null if nothing does.
 scene::LegendrePointer field_within_region(const scene::Medium&);
+// Is what field_within_region makes of two media one density? Fields of scenes that were read again are compared by their contents.
+bool same_density(const scene::Medium&, const scene::Medium&);
 // Share of [-1, 1]^3 where a series is below 0, at Gauss points.
 double negative_share(const scene::TensorShape&, const Eigen::VectorXd& coefficients);
 

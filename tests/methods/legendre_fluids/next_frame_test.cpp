@@ -41,6 +41,34 @@ TEST_CASE("legendre fluids: the next frame is the frame made anew, and makes wha
   }
 }
 
+TEST_CASE("legendre fluids: the paper's systems of the next frame are solved where lamps or densities changed",
+          "[legendre_fluids]") {
+  const auto still = std::make_shared<const Scene>(smoke_for_systems());
+  for (const char* closure : {"least_squares", "upwind"}) {
+    const scene::Settings settings(method.settings(), {{"variant", "paper"}, {"n", "4"}, {"closure", closure}});
+    const auto prepared = method.prepare(still, settings, {1, {}});
+    const scene::Rendering first = prepared->render(view_of(*still), {1, {}});
+    CHECK(first.counters.at("direct_systems_made") == 2);
+    for (const PaperChange& change : paper_changes) {
+      CAPTURE(closure, change.name);
+      const auto there = changed(*still, change);
+      const auto times = prepared->next(there, {1, {}});
+      REQUIRE(times);
+      CHECK(times->empty() == (change.systems_made == 0));
+      const scene::Rendering next = prepared->render(view_of(*there), {1, {}});
+      const scene::Rendering anew = method.prepare(there, settings, {1, {}})->render(view_of(*there), {1, {}});
+      CHECK(next.film.layers == anew.film.layers);
+      CHECK((next.film.layers == first.film.layers) == change.same);
+      if (!there->media.empty()) {
+        CHECK(next.counters.at("direct_systems_made") == change.systems_made);
+        CHECK(next.counters.at("negative_direct_share") == anew.counters.at("negative_direct_share"));
+      }
+      REQUIRE(prepared->next(still, {1, {}}));  // and back
+      CHECK(prepared->render(view_of(*still), {1, {}}).film.layers == first.film.layers);
+    }
+  }
+}
+
 TEST_CASE("legendre fluids: a preparation stays as it is where the next scene is refused", "[legendre_fluids]") {
   const auto still = std::make_shared<const Scene>(smoke_over_floor());
   const auto prepared = method.prepare(still, {method.settings(), given}, {1, {}});

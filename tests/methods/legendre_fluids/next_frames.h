@@ -89,7 +89,52 @@ inline const Change changes[] = {
     {"no surfaces", [](Scene& s) { s.surfaces.clear(); }, 0, false},
 };
 
-inline std::shared_ptr<const Scene> changed(const Scene& from, const Change& change) {
+// Smoke of two albedos in one box above a floor, lit by two lamps: what the paper's systems can draw.
+inline Scene smoke_for_systems() {
+  Scene scene = *with_albedo_field(
+      lit_scene(smoke(random_density({4, 3, 4}, 1), 1), Vec3(-0.48, 0.6, 0.64), oblique_view, 14, 11), {4, 3, 4}, 2);
+  scene.lights.push_back(scene::DirectionalLight{Vec3(0.6, 0.8, 0), Rgb(0.5, 0.4, 0.3)});
+  scene::Plane floor;
+  floor.point = Point3(0, -1.3, 0);
+  floor.normal = Vec3::UnitY();
+  scene.surfaces.push_back({"floor", floor, scene::Lambert{Rgb::Constant(0.5)}});
+  finish(scene);
+  return scene;
+}
+
+struct PaperChange {
+  const char* name;
+  std::function<void(Scene&)> make;
+  int systems_made;  // of two lamps
+  bool same = false;
+};
+inline const PaperChange paper_changes[] = {
+    {"nothing", [](Scene&) {}, 0, true},
+    {"camera", [](Scene& s) { s.camera.position += Vec3(0.05, 0.02, 0); }, 0},
+    {"a camera that turns",
+     [](Scene& s) {
+       const scene::Camera before = s.camera;
+       s.camera = scene::look_at(Point3(-2, 2, 4), Point3::Zero(), Vec3::UnitY());
+       s.camera.kind = before.kind;
+       s.camera.height = before.height;
+     },
+     0},
+    {"a dimmed lamp", [](Scene& s) { std::get<scene::DirectionalLight>(s.lights[1]).irradiance *= 0.5; }, 0},
+    {"a turned lamp", [](Scene& s) { std::get<scene::DirectionalLight>(s.lights[1]).to_light = Vec3(0, 0.8, 0.6); }, 1},
+    {"one lamp less", [](Scene& s) { s.lights.pop_back(); }, 0},
+    {"another density", [](Scene& s) { become(s.media[1], 7); }, 2},
+    {"a density below 0", [](Scene& s) { become(s.media[0], 8, 1); }, 2},
+    {"denser", [](Scene& s) { s.media[0].sigma_t *= 1.5, s.media[1].sigma_t *= 1.5; }, 2},
+    {"coloured", [](Scene& s) { s.media[0].sigma_t = s.media[1].sigma_t = Rgb(0.5, 1, 1); }, 2},
+    {"another albedo", [](Scene& s) { s.media[0].albedo *= 0.5; }, 2},
+    {"one density", [](Scene& s) { s.media.pop_back(); }, 2},
+    {"no medium", [](Scene& s) { s.media.clear(); }, 0},
+    {"a floor that sinks", [](Scene& s) { std::get<scene::Plane>(s.surfaces[0].shape).point[1] -= 0.1; }, 0},
+    {"no floor", [](Scene& s) { s.surfaces.clear(); }, 0},
+};
+
+template <class Change>
+std::shared_ptr<const Scene> changed(const Scene& from, const Change& change) {
   auto scene = std::make_shared<Scene>(from);
   change.make(*scene);
   finish(*scene);
