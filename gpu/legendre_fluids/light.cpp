@@ -393,7 +393,7 @@ std::unique_ptr<scene::Prepared> LegendreLight::prepare_supported(std::shared_pt
                                                                   const Execution&) const {
   const airlight::legendre_fluids::LightOptions options = airlight::legendre_fluids::read_light_options(settings);
   if (options.variant == airlight::legendre_fluids::LightOptions::Variant::paper)
-    if (auto prepared = prepare_paper(scene, options.paper, settings.canonical())) return prepared;
+    if (auto prepared = prepare_paper(scene, options.paper, settings)) return prepared;
   return std::make_unique<PreparedLightGpu>(std::move(scene), options.ray, settings);
 }
 

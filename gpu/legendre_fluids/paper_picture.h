@@ -22,6 +22,6 @@ std::vector<std::string> unsupported_paper(const scene::Scene&, const airlight::
 // not converge.
 std::unique_ptr<scene::Prepared> prepare_paper(std::shared_ptr<const scene::Scene>,
                                                const airlight::legendre_fluids::PaperOptions&,
-                                               const std::string& settings);
+                                               const scene::Settings& given);
 
 }  // namespace airlight::gpu::legendre_fluids
