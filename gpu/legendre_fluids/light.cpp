@@ -56,9 +56,9 @@ class PreparedLightGpu final : public scene::Prepared, public TakesDensity {
   scene::Rendering render(const View&, const Execution&) const override;
   std::optional<std::vector<scene::StageTime>> next(std::shared_ptr<const Scene>, const Execution&) override;
   scene::Rendering render_once(const View&, const Execution&) const;
-  bool take(const DensityOnDevice& d) override {
+  bool take(std::size_t medium, const DensityOnDevice& d) override {
     const Use use(context_);
-    return media_ && media_->take(0, d.state, d.field, d.coefficients, d.box);
+    return media_ && media_->take(medium, d.state, d.field, d.coefficients, d.box);
   }
 
  private:
@@ -362,10 +362,10 @@ scene::Rendering PreparedLightGpu::render_once(const View& view, const Execution
 
 }  // namespace
 
-bool draw_flow(scene::Prepared& picture, const scene::Flow& flow) {
+bool draw_flow(scene::Prepared& picture, const scene::Flow& flow, int density, std::size_t medium) {
   auto* prepared = dynamic_cast<TakesDensity*>(&picture);
-  const std::optional<DensityOnDevice> density = density_on_device(flow);
-  return prepared && density && prepared->take(*density);
+  const std::optional<DensityOnDevice> there = density_on_device(flow, density);
+  return prepared && there && prepared->take(medium, *there);
 }
 
 std::string LegendreLight::about() const {

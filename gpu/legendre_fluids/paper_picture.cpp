@@ -55,7 +55,7 @@ class PreparedPaperGpu final : public scene::Prepared, public TakesDensity {
   std::vector<scene::StageTime> prepare_times() const override { return times_; }
   scene::Rendering render(const View&, const Execution&) const override;
   std::optional<std::vector<scene::StageTime>> next(std::shared_ptr<const Scene>, const Execution&) override;
-  bool take(const DensityOnDevice&) override;
+  bool take(std::size_t medium, const DensityOnDevice&) override;
 
  private:
   std::vector<scene::StageTime> prepare(std::shared_ptr<const Scene>);
@@ -209,9 +209,10 @@ std::vector<scene::Stage> PreparedPaperGpu::stages() const {
                                             : "no surface is lit, no background"}};
 }
 
-bool PreparedPaperGpu::take(const DensityOnDevice& density) {
+bool PreparedPaperGpu::take(std::size_t medium, const DensityOnDevice& density) {
   const Use use(context_);
-  if (!systems_ || !systems_->take(density)) return false;
+  const bool several = std::count_if(scene_->media.begin(), scene_->media.end(), scene::extinguishes) > 1;
+  if (medium > 0 || several || !systems_ || !systems_->take(density)) return false;
   flows_ = stale_ = unseen_ = true;
   direct_made_ = int(lights_.size());
   return true;

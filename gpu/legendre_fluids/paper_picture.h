@@ -12,7 +12,8 @@ namespace airlight::gpu::legendre_fluids {
 class TakesDensity {
  public:
   virtual ~TakesDensity() = default;
-  virtual bool take(const DensityOnDevice&) = 0;
+  // `medium`: among those that extinguish.
+  virtual bool take(std::size_t medium, const DensityOnDevice&) = 0;
 };
 
 // Why shaders cannot do what the CPU's variant can; empty if they can.
