@@ -44,7 +44,7 @@ bool EnvironmentLights::become(const scene::Scene& scene) {
     const bool map_too = l.from == e->map || (l.from && e->map && l.width == e->map->width &&
                                               l.height == e->map->height && l.from->rgb == e->map->rgb);
     return map_too && (l.kind == harmonics) == !e->sh.empty() &&
-           (l.kind != harmonics || std::size_t(l.order * l.order) == e->sh.size());
+           (l.kind != harmonics || std::size_t(l.order) * l.order == e->sh.size());
   };
   if (!std::equal(lights_.begin(), lights_.end(), others.begin(), others.end(), same)) return false;
   for (std::size_t i = 0; i < lights_.size(); ++i) {

@@ -23,7 +23,7 @@ bool is_root(const fs::path& folder) {
 // The folder, or one above it, that is the root of a project, or whose share/airlight is one (cmake --install); empty if there is none.
 fs::path root_above(fs::path folder) {
   while (!is_root(folder)) {
-    if (const fs::path installed = folder / "share/airlight"; is_root(installed)) return installed;
+    if (fs::path installed = folder / "share/airlight"; is_root(installed)) return installed;
     if (folder.empty() || folder == folder.root_path()) return {};
     folder = folder.parent_path();
   }
@@ -49,8 +49,8 @@ fs::path project_root(const std::string& given) {
     return given;
   }
   std::error_code ignored;
-  if (const fs::path root = root_above(fs::current_path(ignored)); !root.empty()) return root;
-  const fs::path root = root_above(fs::read_symlink("/proc/self/exe", ignored).parent_path());
+  if (fs::path root = root_above(fs::current_path(ignored)); !root.empty()) return root;
+  fs::path root = root_above(fs::read_symlink("/proc/self/exe", ignored).parent_path());
   if (root.empty())
     throw Error("no folder above the current one holds experiments/README.md; name the project's folder with --root");
   say(fmt::format("no project above the current folder (experiments/README.md): using {}, above the program",

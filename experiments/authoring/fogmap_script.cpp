@@ -195,7 +195,7 @@ std::string write(const DrawnFogmap& drawn, const std::string& script, const std
   const Canvas& canvas = drawn.canvas;
   const auto& values = canvas.values();
   const bool fits = *std::max_element(values.begin(), values.end()) <= 1;
-  const std::string name = fs::path(out).stem().string() + (fits ? ".png" : ".exr");
+  std::string name = fs::path(out).stem().string() + (fits ? ".png" : ".exr");
   const std::string path = (fs::path(out).parent_path() / name).string();
   scene::write_grey_image(path, {canvas.width(), canvas.height(), values, ""});
   write_checked(

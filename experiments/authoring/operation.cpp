@@ -55,7 +55,7 @@ Operation::Operation(const std::string& line, std::string where) : where_(std::m
 }
 
 std::string Operation::name(const std::vector<std::string>& choices) {
-  const std::string name = choice("op", choices);
+  std::string name = choice("op", choices);
   where_ += ": " + name;
   return name;
 }
@@ -126,7 +126,7 @@ std::string Operation::choice(const std::string& key, const std::vector<std::str
   const std::string words = fmt::format("one of {}", fmt::join(choices, ", "));
   const json& value = require(key, words);
   if (!value.is_string()) expected(key, words);
-  const std::string found = value.get<std::string>();
+  std::string found = value.get<std::string>();
   if (std::find(choices.begin(), choices.end(), found) == choices.end())
     expected(key, fmt::format("{}{}", words, scene::nearest_hint(found, choices)));
   return found;
@@ -148,7 +148,7 @@ Vec3 Operation::vector(const std::string& key, std::optional<Vec3> fallback) con
 }
 
 Vec3 Operation::direction(const std::string& key, std::optional<Vec3> fallback) const {
-  const Vec3 v = vector(key, fallback);
+  const Vec3 v = vector(key, std::move(fallback));
   const double length = v.stableNorm();
   if (!(length > 0) || !std::isfinite(length)) expected(key, "a direction of any length but zero");
   return (v / length).normalized();

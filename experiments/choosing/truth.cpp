@@ -19,7 +19,7 @@ constexpr const char* cap = "64";  // orders of scattering, in endless media tha
 
 }  // namespace
 
-Truth trace_truth(std::shared_ptr<const scene::Scene> scene, const TrialSetup& setup, double allowed,
+Truth trace_truth(const std::shared_ptr<const scene::Scene>& scene, const TrialSetup& setup, double allowed,
                   const Report& report) {
   Truth truth;
   truth.sparse = sparse_view(scene::view_of(*scene), setup.film);
@@ -89,7 +89,7 @@ Measure error_of(const scene::Film& film, const Truth& truth, bool count_noise) 
   for (int group = 0; group < groups * groups; ++group) {
     std::vector<unsigned char> mask = truth.left_out;
     for (int y = group / groups; y < film.height; y += groups)
-      for (int x = group % groups; x < film.width; x += groups) mask[std::size_t(y * film.width + x)] = 1;
+      for (int x = group % groups; x < film.width; x += groups) mask[std::size_t(y) * film.width + x] = 1;
     parts.push_back(without(mask).value);
   }
   const Estimate chosen = jackknife(all.value, parts);

@@ -34,7 +34,7 @@ using Report = std::function<void(double)>;
 
 // In about `allowed` seconds: with fewer samples than asked for where they take longer, but at least 64. Throws NotSupported, Interrupted,
 // and Error where it is black.
-Truth trace_truth(std::shared_ptr<const scene::Scene>, const TrialSetup&, double allowed, const Report&);
+Truth trace_truth(const std::shared_ptr<const scene::Scene>&, const TrialSetup&, double allowed, const Report&);
 
 // Relative L2 of the pixels, with the noise of the reference taken out; that of a path-traced picture is counted. The interval has the
 // noise in it and, where not every pixel is looked at, what other pixels could give: sixteen interleaved groups of pixels are left out in

@@ -38,7 +38,7 @@ struct ConvertOptions {
 };
 
 std::string kind_of(const std::string& out) {
-  const std::string kind = scene::file_ending(out);
+  std::string kind = scene::file_ending(out);
   if (kind != ".png" && kind != ".pfm") throw Error(fmt::format("{}: expected a name in .png or .pfm", out));
   return kind;
 }

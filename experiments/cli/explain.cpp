@@ -58,7 +58,8 @@ bool explain_component(const scene::Component& c, const scene::Settings& setting
   return false;
 }
 
-void explain_renderer(const scene::Renderer& renderer, std::shared_ptr<const scene::Scene> scene, const Pairs& given) {
+void explain_renderer(const scene::Renderer& renderer, const std::shared_ptr<const scene::Scene>& scene,
+                      const Pairs& given) {
   const scene::Settings settings(renderer.settings(), given, renderer.name());
   if (!explain_component(renderer, settings, renderer.supports(*scene, settings), "cannot render this scene")) return;
   Progress progress("preparing " + renderer.name());

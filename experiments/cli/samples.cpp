@@ -35,7 +35,7 @@ std::optional<SampleRange> sample_range(const std::string& text) {
   return range;
 }
 
-scene::Film render_samples(std::shared_ptr<const scene::Scene> scene, const scene::Settings& settings,
+scene::Film render_samples(const std::shared_ptr<const scene::Scene>& scene, const scene::Settings& settings,
                            const SampleRange& range, const scene::Execution& execution,
                            const std::string& samples_file) {
   const path_tracer::World world(scene, path_tracer::parse_options(settings));
@@ -69,7 +69,7 @@ bool passes(const path_tracer::World& world, const scene::View& view, const scen
 
 }  // namespace
 
-scene::Film render_in_passes(std::shared_ptr<const scene::Scene> scene, const scene::Settings& settings,
+scene::Film render_in_passes(const std::shared_ptr<const scene::Scene>& scene, const scene::Settings& settings,
                              const scene::Execution& execution, const std::function<void(const scene::Film&)>& show) {
   const path_tracer::World world(scene, path_tracer::parse_options(settings));
   const scene::View view = scene::view_of(*scene);

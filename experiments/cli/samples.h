@@ -20,12 +20,12 @@ std::optional<SampleRange> sample_range(const std::string& text);
 
 // Renders the range, writes its samples to `samples_file`, and returns the film of it. Stopped early it keeps what is
 // done; throws Interrupted if there is nothing.
-scene::Film render_samples(std::shared_ptr<const scene::Scene>, const scene::Settings&, const SampleRange&,
+scene::Film render_samples(const std::shared_ptr<const scene::Scene>&, const scene::Settings&, const SampleRange&,
                            const scene::Execution&, const std::string& samples_file);
 
 // Renders with the path tracer and shows the picture so far after 64, 128, 256, ... samples. The result has the bits that the renderer makes
 // in one go.
-scene::Film render_in_passes(std::shared_ptr<const scene::Scene>, const scene::Settings&, const scene::Execution&,
-                             const std::function<void(const scene::Film&)>& show);
+scene::Film render_in_passes(const std::shared_ptr<const scene::Scene>&, const scene::Settings&,
+                             const scene::Execution&, const std::function<void(const scene::Film&)>& show);
 
 }  // namespace airlight::experiments::cli

@@ -85,8 +85,9 @@ class Decoder {
   }
   // Between levels, at points.
   std::vector<double> between(const Points& points) const {
-    std::vector<float> flat(4 * points.size());
-    std::memcpy(flat.data(), points.data(), 4 * flat.size());
+    std::vector<float> flat;
+    flat.reserve(4 * points.size());
+    for (const Eigen::Vector4f& p : points) flat.insert(flat.end(), p.begin(), p.end());
     const gpu::Buffer buffer(context_, "points", flat);
     return run(true, int(points.size()),
                [&](gpu::Program&) { buffer.bind(gpu::compensated_ray_marching::at::residual_points); });

@@ -88,7 +88,7 @@ fs::path keep_device_record(const DeviceRecord& record) {
                {"checked", record.checked},
                {"identity", identity()},
                {"findings", findings}};
-  const fs::path file = record_file();
+  fs::path file = record_file();
   scene::make_private_folder(device_records());
   scene::write_file_atomically(file.string(), j.dump(2) + "\n");
   return file;

@@ -250,7 +250,7 @@ std::vector<double> FramesAfter::some(const scene::View& view, const scene::Exec
 }
 
 std::optional<FrameAfter> frame_after(Moving::What what, const scene::Renderer& renderer,
-                                      const scene::Settings& settings, std::shared_ptr<const Scene> here,
+                                      const scene::Settings& settings, const std::shared_ptr<const Scene>& here,
                                       const scene::View& view, const scene::Execution& execution, double budget) {
   const std::shared_ptr<const Scene> other = moved_back(*here, {what});
   if (!other || !renderer.supports(*other, settings).empty()) return {};

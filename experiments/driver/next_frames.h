@@ -89,7 +89,7 @@ struct FrameAfter {
 };
 // The median of a few such frames in about `budget` seconds. Nothing where nothing in the scene moves so.
 std::optional<FrameAfter> frame_after(Moving::What, const scene::Renderer&, const scene::Settings&,
-                                      std::shared_ptr<const scene::Scene>, const scene::View&, const scene::Execution&,
-                                      double budget);
+                                      const std::shared_ptr<const scene::Scene>&, const scene::View&,
+                                      const scene::Execution&, double budget);
 
 }  // namespace airlight::experiments

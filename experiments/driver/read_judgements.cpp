@@ -204,7 +204,7 @@ void ExperimentReader::checks(const TableReader& top) {
 }
 
 std::string ExperimentReader::baseline_of(const TableReader& reader, const ExpectedCase& e) const {
-  const std::string baseline = reader.text("baseline");
+  std::string baseline = reader.text("baseline");
   known(reader, "baseline", baseline, "method");
   if (reader.has("setting")) reader.fail("setting", "has no effect beside baseline: a speed-up is of all settings");
   const auto& all = experiment_.speed_ups;

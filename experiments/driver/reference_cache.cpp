@@ -23,7 +23,7 @@ std::string reference_key(const scene::Scene& scene, const scene::Renderer& rend
                       device.empty() ? "" : gpu::foreign_shaders()});
 }
 
-Reference compute_reference(std::shared_ptr<const scene::Scene> scene, const scene::Renderer& renderer,
+Reference compute_reference(const std::shared_ptr<const scene::Scene>& scene, const scene::Renderer& renderer,
                             const scene::Settings& settings, const scene::Execution& execution) {
   Reference reference;
   const auto start = std::chrono::steady_clock::now();
@@ -37,7 +37,7 @@ Reference compute_reference(std::shared_ptr<const scene::Scene> scene, const sce
   return reference;
 }
 
-Reference reference_for(std::shared_ptr<const scene::Scene> scene, const scene::Renderer& renderer,
+Reference reference_for(const std::shared_ptr<const scene::Scene>& scene, const scene::Renderer& renderer,
                         const scene::Settings& settings, const scene::Execution& execution,
                         const std::filesystem::path& committed) {
   const std::string key = reference_key(*scene, renderer, settings, committed);

@@ -30,11 +30,11 @@ std::string reference_key(const scene::Scene&, const scene::Renderer&, const sce
 
 // The committed film; else through the store of the execution, and a line says that the film is missing. Throws
 // NotSupported, Interrupted if stopped, Error for a damaged film.
-Reference reference_for(std::shared_ptr<const scene::Scene>, const scene::Renderer&, const scene::Settings&,
+Reference reference_for(const std::shared_ptr<const scene::Scene>&, const scene::Renderer&, const scene::Settings&,
                         const scene::Execution&, const std::filesystem::path& committed = {});
 
 // Renders, and keeps and finds nothing but what the renderer itself keeps in the store of the execution.
-Reference compute_reference(std::shared_ptr<const scene::Scene>, const scene::Renderer&, const scene::Settings&,
+Reference compute_reference(const std::shared_ptr<const scene::Scene>&, const scene::Renderer&, const scene::Settings&,
                             const scene::Execution&);
 
 }  // namespace airlight::experiments

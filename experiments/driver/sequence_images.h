@@ -17,6 +17,7 @@ class SequenceImages final : public Images {
   std::vector<std::string> method_keys() const override { return {"layer", "convert", "anew"}; }
   void read_method(const TableReader&, const Experiment&, MethodCase&) const override;
   void check_metrics(Experiment&, const std::string& position) const override;
+  // Not those of single images. NOLINTNEXTLINE(bugprone-parent-virtual-call)
   std::vector<std::string> times() const override { return ExperimentKind::times(); }
   void check(const Experiment&, const RunOptions&) const override;
   Outcome run(Experiment, const RunOptions&) const override;

@@ -75,7 +75,7 @@ TableReader reader_of(const toml::table& list, const std::string& name) {
 std::string simulated(const toml::table& list, const std::string& name) {
   const TableReader reader = reader_of(list, name);
   if (!list[name].as_table()->contains("fit")) return name;
-  const std::string of = reader.text("fit");
+  std::string of = reader.text("fit");
   const toml::table* other = list[of].as_table();
   if (!other || !other->contains("problem")) reader.expected("fit", "the name of a sequence that is simulated");
   return of;

@@ -31,7 +31,7 @@ Picture tone_mapped(std::span<const float> rgb, int width, int height, double ex
     out[std::size_t(c)].resize(height, width);
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x)
-        out[std::size_t(c)](y, x) = toned(scale * std::max(0.0F, rgb[std::size_t((y * width + x) * 3 + c)]));
+        out[std::size_t(c)](y, x) = toned(scale * std::max(0.0F, rgb[(std::size_t(y) * width + x) * 3 + c]));
   }
   return out;
 }

@@ -59,7 +59,7 @@ double Values::smoothed_range() const {
     int count = 0;
     for (int y = std::max(0, py - 1); y <= std::min(height_ - 1, py + 1); ++y)
       for (int x = std::max(0, px - 1); x <= std::min(width_ - 1, px + 1); ++x)
-        if (kept_[std::size_t(y * width_ + x)]) {
+        if (kept_[std::size_t(y) * width_ + x]) {
           sum += r_[std::size_t(y * width_ + x) * 3 + at % 3];
           ++count;
         }

@@ -51,10 +51,10 @@ void Pane::prepare(const scene::Renderer& renderer, const scene::Settings& setti
     prepared_ = renderer.prepare(scene, settings, execution);
     frame.times = prepared_->prepare_times();
   }
-  scene_ = scene;
+  scene_ = std::move(scene);
 }
 
-Frame Pane::render(const FrameRequest& request, std::shared_ptr<const scene::Scene> scene,
+Frame Pane::render(const FrameRequest& request, const std::shared_ptr<const scene::Scene>& scene,
                    const scene::Execution& execution) {
   const scene::Renderer& renderer = find_renderer(request.method, "method");
   const scene::Settings settings(renderer.settings(), request.settings, renderer.name());

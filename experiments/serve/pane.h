@@ -31,7 +31,7 @@ struct Frame {
 class Pane {
  public:
   // Throws Error for settings that are not valid, scene::Interrupted where the execution says so.
-  Frame render(const FrameRequest&, std::shared_ptr<const scene::Scene>, const scene::Execution&);
+  Frame render(const FrameRequest&, const std::shared_ptr<const scene::Scene>&, const scene::Execution&);
 
  private:
   void prepare(const scene::Renderer&, const scene::Settings&, std::shared_ptr<const scene::Scene>,

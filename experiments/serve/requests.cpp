@@ -205,7 +205,7 @@ ReferenceRequest read_reference_request(const std::string& body, int scenes) {
 
 std::string read_client(const std::string& body) {
   Fields fields(body);
-  const std::string client = fields.word("client", "-_", 40);
+  std::string client = fields.word("client", "-_", 40);
   fields.done();
   return client;
 }

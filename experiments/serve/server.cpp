@@ -129,7 +129,7 @@ struct Server::Hidden {
       const std::string file = name.substr(name.rfind('/') + 1);
       const auto send = [this, &text = text, type = content_type(name)](const Request& request, Response& response) {
         if (const std::string line = objection(request); !line.empty()) return say_no(response, 403, line);
-        response.set_content(text, type.c_str());
+        response.set_content(text, type);
       };
       std::string path = "/" + file;
       for (std::size_t dot = path.find('.'); dot != path.npos; dot = path.find('.', dot + 2)) path.insert(dot, "\\");
@@ -214,8 +214,8 @@ Server::Server(Studio& studio, const ServerOptions& options) : hidden_(std::make
   hidden_->add_questions();
   hidden_->add_watch();
   if (options.port == 0)
-    hidden_->port = http.bind_to_any_port(options.host.c_str());
-  else if (http.bind_to_port(options.host.c_str(), options.port))
+    hidden_->port = http.bind_to_any_port(options.host);
+  else if (http.bind_to_port(options.host, options.port))
     hidden_->port = options.port;
   if (hidden_->port <= 0)
     throw Error(fmt::format("{}:{}: cannot listen there: choose another --port, 0 for any that is free", options.host,

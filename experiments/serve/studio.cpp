@@ -102,7 +102,7 @@ std::shared_ptr<const scene::Scene> Studio::kept(const std::string& key,
         return at->second;
       }
   }
-  const auto scene = make();
+  auto scene = make();
   const std::lock_guard lock(sources_mutex_);
   scenes_.emplace_front(key, scene);
   if (scenes_.size() > most_scenes) scenes_.pop_back();
@@ -285,7 +285,7 @@ std::shared_ptr<Studio::Job> Studio::take_next() {
   };
   const auto next =
       std::min_element(queue_.begin(), queue_.end(), [&](const auto& a, const auto& b) { return end(a) < end(b); });
-  const std::shared_ptr<Job> job = *next;
+  std::shared_ptr<Job> job = *next;
   queue_.erase(next);
   return job;
 }

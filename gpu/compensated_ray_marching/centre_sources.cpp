@@ -63,7 +63,7 @@ CentreSourcesOnDevice::CentreSourcesOnDevice(Context& context, const scene::Gaus
   spheres_ = std::make_unique<Buffer>(context, "spheres that cast shadows", objects_of(casters_, surfaces));
   if (options.paper.transmittance == airlight::compensated_ray_marching::Transmittance::directional)
     directions_ = airlight::compensated_ray_marching::transmittance_directions();
-  const auto bands = std::size_t(options.order * options.order), n = std::size_t(count_);
+  const auto bands = std::size_t(options.order) * options.order, n = std::size_t(count_);
   const std::size_t parts = directions_.empty() ? bands : directions_.size();
   light_bands_ = std::make_unique<Buffer>(context, "light in bands", 8 * 3 * parts);
   sources_ = std::make_unique<Buffer>(context, "sources of centres", 16 * n);

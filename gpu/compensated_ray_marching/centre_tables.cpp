@@ -79,7 +79,7 @@ void add_harmonics(int order, Tables& t) {
     first.push_back((m % 2 ? -1 : 1) * std::sqrt((m > 0 ? 2 : 1) * diagonal));
     for (int l = m + 1; l < order; ++l) {
       const double span = double(l - m) * (l + m);
-      const auto at = std::size_t(l * order + m);
+      const auto at = std::size_t(l) * order + m;
       up[at] = std::sqrt((2.0 * l - 1) * (2.0 * l + 1) / span);
       if (l > m + 1) back[at] = std::sqrt((2.0 * l + 1) * (l - 1.0 - m) * (l - 1.0 + m) / ((2.0 * l - 3) * span));
     }
@@ -144,7 +144,7 @@ double about_axis_factor(int l) { return std::sqrt(4 * pi / (2 * l + 1)); }
 
 CentreTables::CentreTables(Context& context, int order, Transmittance kind, double cutoff, bool objects)
     : order_(order) {
-  const auto bands = std::size_t(order * order);
+  const auto bands = std::size_t(order) * order;
   Tables t;
   t.number("SH_ORDER", std::size_t(order));
   t.number("BANDS", bands);

@@ -175,7 +175,7 @@ void LitGridOnDevice::arrange(bool grey) {
     for (std::size_t i = 0; i < g.channels.size(); ++i)
       light_of_[std::size_t(g.channels[i])] = g.first + (grey ? 0 : int(i));
   }
-  const std::size_t cells = 4 * std::size_t(cells_), bands = std::size_t(options_.order * options_.order);
+  const std::size_t cells = 4 * std::size_t(cells_), bands = std::size_t(options_.order) * options_.order;
   // Beyond the nodes with smoke nothing is ever written, so that zeros stay.
   single_ = std::make_unique<Buffer>(context_, "single scattering", cells * bands * std::size_t(lights_));
   result_ = std::make_unique<Buffer>(context_, "result", cells * bands * std::size_t(lights_));

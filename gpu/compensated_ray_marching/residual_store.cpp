@@ -125,8 +125,9 @@ std::vector<float> levels_between_on_device(Context& context, const ResidualOnDe
                                             const std::vector<Eigen::Vector4f>& points) {
   if (points.empty()) return {};
   Program& program = decoder(context, residual, true);
-  std::vector<float> flat(4 * points.size());
-  std::memcpy(flat.data(), points.data(), 4 * flat.size());
+  std::vector<float> flat;
+  flat.reserve(4 * points.size());
+  for (const Eigen::Vector4f& p : points) flat.insert(flat.end(), p.begin(), p.end());
   const Buffer at_points(context, "points", flat), result(context, "levels", 4 * points.size());
   at_points.bind(at::residual_points);
   result.bind(at::residual_result);

@@ -94,7 +94,7 @@ void Volume::find_ends(const scene::View& view, const Froxels& froxels, const Bu
   const auto& cells = froxels.cells;
   const std::size_t rays = std::size_t(cells.columns) * cells.rows;
   for (int i = 0; i < count; ++i) {
-    const auto& look = frames_[std::size_t(first_frame + i)];
+    const auto& look = frames_[std::size_t(first_frame) + i];
     const CellGrid grid{cells.columns, cells.rows, cells.width, cells.height, look[0], look[1], std::size_t(i) * rays};
     if (ends_.surfaces) ends_.surfaces->find(view, ends, grid);
     if (ends_.backdrops) ends_.backdrops->find(view, ends, ends_.surfaces != nullptr, grid);

@@ -30,9 +30,8 @@ class LegendreFlowGpu final : public LegendreFlow {
       : LegendreFlow(std::move(problem), std::move(fluid), cells, mixing),
         device_(to_device(*fluid_, {source_, push_})) {}
 
-  void add(const scene::Push& push) override {
-    scene::Flow::add(push);
-  }  // shaders have room for the problem's forces alone
+  // Not LegendreFlow::add: shaders have room for the problem's forces alone.
+  void add(const scene::Push& push) override { scene::Flow::add(push); }  // NOLINT(bugprone-parent-virtual-call)
   std::map<std::string, double> counters() const override {
     auto counters = LegendreFlow::counters();
     for (const auto& [name, value] : device_->counters()) counters[name] = value;

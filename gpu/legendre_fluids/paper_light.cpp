@@ -137,7 +137,7 @@ void PaperSystems::lay_out_tables(const DensityProduct& product) {
   const auto [x, y, z] = shape_;
   const int squares = x * x + y * y + z * z;
   definitions_["ENDS_AT"] = three({squares, squares + x, squares + x + y});
-  const std::size_t weights = std::size_t(squares + x + y + z);
+  const std::size_t weights = std::size_t(squares) + x + y + z;
   number("WEIGHTS_AT", weights);
   number("DIRECTIONS_AT", directions_at_);
   number("DIRECTION_STRIDE", weights + 4);

@@ -54,9 +54,8 @@ class PreparedMarchGpu final : public scene::Prepared {
 void PreparedMarchGpu::prepare(std::shared_ptr<const Scene> scene, const Execution& execution) {
   const Use use(context_);
   frame_.timer.restart();
-  Plan plan =
-      make_plan(scene, airlight::ray_marcher::read_options(settings_, airlight::ray_marcher::length_unit(*scene)),
-                plan_.scene ? &plan_ : nullptr);
+  const auto options = airlight::ray_marcher::read_options(settings_, airlight::ray_marcher::length_unit(*scene));
+  Plan plan = make_plan(std::move(scene), options, plan_.scene ? &plan_ : nullptr);
   if (!become(plan, execution)) {
     device_.reset();
     ends_.reset();

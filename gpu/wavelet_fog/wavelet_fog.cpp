@@ -188,7 +188,7 @@ std::vector<unsigned> PreparedWaveletFogGpu::finish(scene::Rendering& result) co
     result.counters["kept"] += double(report.kept);
     result.counters["map_error_ppm"] = std::max(result.counters["map_error_ppm"], 1e6 * report.error);
   }
-  const std::vector<unsigned> words = frame_.download.values<unsigned>("counters");
+  std::vector<unsigned> words = frame_.download.values<unsigned>("counters");
   if (words.empty()) return words;
   result.counters["cells"] = words[0] + 4294967296.0 * words[1];
   result.counters["coefficients"] = words[2] + 4294967296.0 * words[3];

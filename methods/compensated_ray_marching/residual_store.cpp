@@ -18,7 +18,7 @@ std::vector<std::int8_t> with_border(const scene::VoxelGrid& layout, const std::
     const Vector3i there(i % padded[0] - 1, i / padded[0] % padded[1] - 1, i / padded[0] / padded[1] - 1);
     const Vector3i within = there.cwiseMax(0).cwiseMin(size - Vector3i::Ones());
     if (layout.clamp_border || there == within)
-      all[std::size_t(i)] = levels[std::size_t(within[0] + size[0] * (within[1] + size[1] * within[2]))];
+      all[std::size_t(i)] = levels[within[0] + std::size_t(size[0]) * (within[1] + size[1] * within[2])];
   }
   return all;
 }

@@ -27,7 +27,7 @@ void in_slice(const scene::VoxelGrid& grid, const scene::Gaussian& g, double cut
   for (int j = first(1); j <= last(1); ++j)
     for (int i = first(0); i <= last(0); ++i)
       if (const double s = dz + square(j, 1) + square(i, 0); s <= cut2)
-        of(std::size_t(i + grid.size[0] * j), g.amplitude * std::exp(-s));
+        of(i + std::size_t(grid.size[0]) * j, g.amplitude * std::exp(-s));
 }
 
 }  // namespace

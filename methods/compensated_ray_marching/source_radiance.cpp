@@ -133,7 +133,7 @@ std::vector<Rgb> SourceRadiance::attenuated_light(const Point3& x) const {
   std::vector<Rgb> left(light_.harmonics.size(), Rgb::Zero());
   const std::vector<Harmonics> channels = passed(x, objects_);
   for (std::size_t c = 0; c < channels.size(); ++c) {
-    const std::vector<Rgb> product = scene::triple_product(order())(light_.harmonics, channels[c]);
+    std::vector<Rgb> product = scene::triple_product(order())(light_.harmonics, channels[c]);
     if (channels.size() == 1) return product;
     for (std::size_t i = 0; i < left.size(); ++i) left[i][Eigen::Index(c)] = product[i][Eigen::Index(c)];
   }
@@ -153,7 +153,7 @@ Rgb SourceRadiance::irradiance(const Point3& x, const Vec3& normal,
   }
   const std::vector<Harmonics> channels = passed(x, others);
   for (std::size_t c = 0; c < channels.size(); ++c) {
-    const Rgb one = compensated_ray_marching::irradiance(normal, channels[c], light_.harmonics);
+    Rgb one = compensated_ray_marching::irradiance(normal, channels[c], light_.harmonics);
     if (channels.size() == 1) return one;
     sum[Eigen::Index(c)] = one[Eigen::Index(c)];
   }

@@ -32,7 +32,7 @@ Cells cells_of(const scene::TriangleMesh& mesh) {
   const auto middle = [&](int x, int y, int z) {
     return Point3(corner + cells.side * Vec3(x + 0.5, y + 0.5, z + 0.5));
   };
-  const auto at = [&](int x, int y, int z) { return std::size_t((z * n[1] + y) * n[0] + x); };
+  const auto at = [&](int x, int y, int z) { return (std::size_t(z) * n[1] + y) * n[0] + x; };
   std::vector<char> inside(std::size_t(n[0]) * std::size_t(n[1]) * std::size_t(n[2]), 0);
   for (int z = 0; z < n[2]; ++z)
     for (int y = 0; y < n[1]; ++y) {

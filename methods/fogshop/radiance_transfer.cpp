@@ -164,7 +164,7 @@ std::vector<std::vector<RadianceTransfer::Seen>> RadianceTransfer::look_around(c
 // One bounce more, for all that has been reflected so far. `solid_angle`: of a direction [sr].
 void RadianceTransfer::reflect(const scene::Scene& scene, const std::vector<std::vector<Seen>>& seen,
                                double solid_angle, const scene::Execution& execution) {
-  const auto size = std::size_t(order_ * order_);
+  const auto size = std::size_t(order_) * order_;
   std::vector<std::vector<std::vector<Rgb>>> sent(scene.surfaces.size());
   for (std::size_t s = 0; s < scene.surfaces.size(); ++s)
     if (!coefficients_[s].empty()) sent[s] = sent_by_triangles(scene, s);
@@ -176,7 +176,7 @@ void RadianceTransfer::reflect(const scene::Scene& scene, const std::vector<std:
     reflections[s].assign(3 * std::size_t(count) * size, 0.0f);
     scene::parallel_for((count + chunk - 1) / chunk, execution, [&](int row) {
       std::vector<Rgb> sum(size);
-      for (auto v = std::size_t(row * chunk); v < std::size_t(std::min(count, (row + 1) * chunk)); ++v) {
+      for (auto v = std::size_t(row) * chunk; v < std::size_t(std::min(count, (row + 1) * chunk)); ++v) {
         std::fill(sum.begin(), sum.end(), Rgb::Zero());
         for (const Seen& each : seen[first + v]) {
           const std::vector<Rgb>& from = sent[std::size_t(each.surface)][std::size_t(each.triangle)];

@@ -44,7 +44,7 @@ SkyGrid::SkyGrid(const GaussianArrays& gaussians, int cells) {
 }
 
 Point3 SkyGrid::node(std::size_t i) const {
-  const std::size_t across = std::size_t(last[0] + 1), lines = std::size_t(last[1] + 1);
+  const std::size_t across = std::size_t(last[0]) + 1, lines = std::size_t(last[1]) + 1;
   return corner + cell * Vec3(double(i % across), double(i / across % lines), double(i / across / lines));
 }
 
@@ -53,7 +53,7 @@ OpenBeams::OpenBeams(const scene::Geometry& geometry, const SkyGrid& grid, const
     : words((beams.size() + 31) / 32),
       bits(grid.nodes() * words, 0),
       rays(double(grid.nodes()) * double(beams.size())) {
-  const std::size_t row = std::size_t(grid.last[0] + 1);
+  const std::size_t row = std::size_t(grid.last[0]) + 1;
   std::vector<char> reached(grid.nodes(), false);
   scene::parallel_for(int(grid.nodes() / row), execution, [&](int line) {
     for (std::size_t i = std::size_t(line) * row; i < std::size_t(line + 1) * row; ++i)

@@ -24,7 +24,7 @@ struct SliceEdges {
 // Values that arrays over the edges hold: whole vectors are read beyond the last.
 constexpr std::size_t slice_room(int slices) {
   constexpr int padding = GaussianArrays::padding;
-  return std::size_t((slices + padding) / padding * padding + 2 * padding);
+  return std::size_t(slices + padding) / padding * padding + 2 * padding;
 }
 
 // Working memory of one thread.

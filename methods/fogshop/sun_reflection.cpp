@@ -61,7 +61,7 @@ double mean_lobe(double exponent, bool across, double angle, double gamma) {
 }  // namespace
 
 template <class Kernel>
-DepthAngleTable::DepthAngleTable(Kernel&& kernel) {
+DepthAngleTable::DepthAngleTable(const Kernel& kernel) {
   std::vector<std::vector<double>> means(angles, std::vector<double>(rings));
   for (int a = 0; a < angles; ++a)
     for (int i = 0; i < rings; ++i) means[a][i] = kernel(pi * a / (angles - 1), ring_rule().gamma[i]);

@@ -20,7 +20,7 @@ class DepthAngleTable {
   // kernel(angle, gamma): mean of the function over the ring at gamma around the light, which is at `angle` from the
   // function's axis. The table is 2 pi integral kernel NPSF_T sin gamma dgamma.
   template <class Kernel>
-  explicit DepthAngleTable(Kernel&& kernel);
+  explicit DepthAngleTable(const Kernel& kernel);
   double operator()(double T, double cosine) const;
   const std::vector<double>& values() const { return values_; }  // [depth][angle]
 

@@ -40,7 +40,7 @@ double column(const scene::LegendreBox& field, const Ray& ray, Interval t) {
 
 std::string unsupported_field(const std::vector<scene::Medium>& media, std::size_t i) {
   const scene::Medium& medium = media[i];
-  const std::string why = scene::unknown_field<scene::LegendrePointer, scene::Homogeneous>(media, i);
+  std::string why = scene::unknown_field<scene::LegendrePointer, scene::Homogeneous>(media, i);
   if (!why.empty()) return why;
   const bool box = std::holds_alternative<Box>(medium.region);
   if (std::holds_alternative<scene::Homogeneous>(medium.field))

@@ -22,7 +22,7 @@ struct BlockRay {
 // far, and with depth = centre, the ray goes through the middle.
 BlockRay block_ray(const Plan& plan, const scene::View& view, const scene::CameraRays& rays, const LowFilm& film,
                    const Behind& behind, int x, int y) {
-  const BlockRay middle{rays(film.across.center(x), film.down.center(y))};
+  BlockRay middle{rays(film.across.center(x), film.down.center(y))};
   if (behind.depth.empty()) return middle;
   if (!plan.options.min_max) {
     const double t = camera_end(*plan.scene, middle.ray).t;

@@ -104,7 +104,7 @@ std::vector<KeptSamples> other_files(const std::string& folder, const Identity& 
 Accumulation start_from(const World& world, const scene::View& view, const std::string& folder,
                         std::vector<std::string>& notes, std::vector<std::string>& ranges) {
   const Options& options = world.options();
-  const Accumulation fresh = empty_accumulation(world, view);
+  Accumulation fresh = empty_accumulation(world, view);
   if (auto found = load(fresh, cache_file(folder, fresh.identity, options), options.samples, notes)) return *found;
   if (options.target_error > 0) return fresh;
   Accumulation samples = fresh;

@@ -205,7 +205,7 @@ Vec3 Walk::draw_direction(Path& path, const Vertex& v, const RandomBlock& random
     path.direction_pdf = scene::phase_value(phase, c);
     return turned(v.w, c, random.coarse(2));
   }
-  const Vec3 out = sample_scatter(v, block(path, Purpose::scatter, 1).coarse(0), random.fine(0), random.coarse(2));
+  Vec3 out = sample_scatter(v, block(path, Purpose::scatter, 1).coarse(0), random.fine(0), random.coarse(2));
   path.direction_pdf = scatter_pdf(v, out);
   path.throughput *= path.direction_pdf > 0 ? Rgb(scatter_value(v, out) / path.direction_pdf) : Rgb(Rgb::Zero());
   ++path.reflections;

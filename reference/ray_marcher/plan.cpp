@@ -35,14 +35,14 @@ bool only_deep_lamps(const Plan& plan) {
 
 Plan make_plan(std::shared_ptr<const scene::Scene> scene, const Options& options, const Plan* before) {
   Plan plan;
-  plan.scene = scene;
+  plan.scene = std::move(scene);
   plan.options = options;
-  plan.layers = make_layers(scene->media, before ? before->layers : std::vector<Layer>{});
-  plan.swallowed = scene::swallows_distant_light(scene->media);
-  plan.lights = scene::lights_from_directions(scene->lights, options.environment_directions, plan.swallowed);
+  plan.layers = make_layers(plan.scene->media, before ? before->layers : std::vector<Layer>{});
+  plan.swallowed = scene::swallows_distant_light(plan.scene->media);
+  plan.lights = scene::lights_from_directions(plan.scene->lights, options.environment_directions, plan.swallowed);
   for (const Layer& layer : plan.layers)
     if (!plan.lights.empty() && (layer.medium->albedo * layer.medium->sigma_t > 0).any()) plan.scatters = true;
-  if (too_fine_for_kernels(*scene)) plan.options.simd = false;
+  if (too_fine_for_kernels(*plan.scene)) plan.options.simd = false;
   // Kernels compute the light of steps in float, too, where what is below 1.2e-38 becomes 0.
   if (only_deep_lamps(plan)) plan.options.simd = false;
   return plan;

@@ -10,7 +10,7 @@ namespace airlight::scene {
 namespace {
 
 Box box_of(const DensityField& field) {
-  const Box box = varied_support(field);
+  Box box = varied_support(field);
   if (constant_part(field) > 0 || box.empty() || !std::isfinite(box.lo[1]) || !std::isfinite(box.hi[1]))
     throw Error("the medium has no end in height, expected one with finite columns");
   return box;

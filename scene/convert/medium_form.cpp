@@ -40,7 +40,7 @@ void bind(SettingBinder& b, MediumConversion& c) {
 
 // The box in which a medium is sampled.
 Box sampled_box(const std::vector<Medium>& media, std::size_t i) {
-  const Box box = bounding_box(media[i]);
+  Box box = bounding_box(media[i]);
   if (!box.empty() && box.size().allFinite() && (box.size().array() > 0).all()) return box;
   const std::string reason = fmt::format("{} {}: a conversion needs one with an end in all directions", label(media, i),
                                          box.empty() ? "is empty" : "has no end");

@@ -119,6 +119,7 @@ GreyImage read_grey_png(const std::string& path, std::size_t most_pixels) {
 
 void write_grey_png(const std::string& path, const GreyImage& image) {
   std::vector<png_byte> bytes;
+  bytes.reserve(2 * image.values.size());
   for (const double value : image.values) {
     if (!(value >= 0 && value <= 1)) throw Error(fmt::format("{}: a value of {}, expected 0 to 1", path, value));
     const long v = std::lround(65535 * value);

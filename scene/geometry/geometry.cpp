@@ -105,7 +105,7 @@ Geometry::Geometry(const std::vector<Surface>& surfaces) : impl_(std::make_uniqu
   for (const Surface& surface : surfaces) check(surface);
   impl_->surfaces = surfaces;
   std::vector<Box> boxes;
-  const auto add = [&](Primitive primitive, const Box& box) {
+  const auto add = [&](const Primitive& primitive, const Box& box) {
     impl_->primitives.push_back(primitive);
     boxes.push_back(box);
     impl_->bounds = unite(impl_->bounds, box);

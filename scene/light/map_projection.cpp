@@ -10,7 +10,7 @@
 namespace airlight::scene {
 namespace {
 
-std::size_t pair_index(int l, int m) { return std::size_t(l * (l + 1) / 2 + m); }
+std::size_t pair_index(int l, int m) { return std::size_t(l) * (l + 1) / 2 + m; }
 
 // For each frequency and row three sums with the cosine, three with the sine.
 std::vector<double> fourier_sums(const EnvironmentMap& map, int order) {

@@ -137,7 +137,7 @@ Interval read_time(const TableReader& reader) {
 
 // Reads a region that must overlap the box.
 Region read_place(const TableReader& reader, const FlowProblem& problem) {
-  const Region region = read_region(reader.required_table("region"));
+  Region region = read_region(reader.required_table("region"));
   const Box part = intersect(bounding_box(region), problem.box);
   if (part.empty()) reader.fail("region", "region lies outside the box of the flow");
   return region;
@@ -216,8 +216,8 @@ void require_part(const TableReader& reader, const Surface& surface, const Box& 
   }
 }
 
-Surface read_obstacle(TableReader reader, const std::string& folder, const FlowProblem& problem) {
-  const Surface surface = read_surface(reader, folder);
+Surface read_obstacle(const TableReader& reader, const std::string& folder, const FlowProblem& problem) {
+  Surface surface = read_surface(reader, folder);
   const bool solid = match(
       surface.shape, [](const TriangleMesh& mesh) { return closed(mesh); }, [](const Sphere&) { return true; },
       [](const Plane&) { return false; });

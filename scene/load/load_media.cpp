@@ -28,8 +28,8 @@ PhaseFunction read_phase(TableReader reader) {
 
 Slab read_slab(TableReader& reader) {
   reader.allow({"type", "normal", "lo", "hi"});
-  const Slab slab{reader.direction("normal", Vec3::UnitY()), reader.number("lo", coordinate),
-                  reader.number("hi", coordinate)};
+  Slab slab{reader.direction("normal", Vec3::UnitY()), reader.number("lo", coordinate),
+            reader.number("hi", coordinate)};
   if (!(slab.hi - slab.lo >= least_length))
     reader.expected("hi", fmt::format("a number {} m or more above 'lo'", least_length));
   return slab;

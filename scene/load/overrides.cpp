@@ -81,9 +81,9 @@ void assign(toml::node& container, const Walk& walk, toml::node&& value) {
   std::move(value).visit([&](auto&& concrete) {
     using Value = std::remove_cvref_t<decltype(concrete)>;
     if (toml::array* array = container.as_array())
-      array->replace(array->cbegin() + walk.index(*array, last), Value(std::move(concrete)));
+      array->replace(array->cbegin() + walk.index(*array, last), Value(std::forward<decltype(concrete)>(concrete)));
     else if (toml::table* table = container.as_table())
-      table->insert_or_assign(walk.parts[last], Value(std::move(concrete)));
+      table->insert_or_assign(walk.parts[last], Value(std::forward<decltype(concrete)>(concrete)));
     else
       walk.fail(fmt::format("{} is {}, expected a table or a list", walk.container(last), written(container)));
   });

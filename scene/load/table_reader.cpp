@@ -134,7 +134,7 @@ std::string TableReader::text(const std::string& key, std::optional<std::string>
 }
 
 std::string TableReader::checked_name(const std::string& key, std::optional<std::string> fallback, bool of_file) const {
-  const std::string value = text(key, std::move(fallback));
+  std::string value = text(key, std::move(fallback));
   const bool leads_away = value == "." || value == ".." || value.find('/') != std::string::npos;
   if (!value.empty() && value.size() <= 200 && printable(value) == value && !(of_file && leads_away)) return value;
   const std::string what =

@@ -31,7 +31,7 @@ Similarity read_transform(const TableReader& parent, const std::string& key) {
 }
 
 Box read_corners(const TableReader& reader) {
-  const Box box{reader.vector("lo"), reader.vector("hi")};
+  Box box{reader.vector("lo"), reader.vector("hi")};
   if (!((box.hi - box.lo).array() >= least_length).all())
     reader.expected("hi", fmt::format("a corner {} m or more above 'lo' on every axis", least_length));
   return box;

@@ -35,7 +35,7 @@ void append(std::string& text, const toml::node& node, std::size_t most) {
 }  // namespace
 
 std::string location(const toml::source_region& source) {
-  const std::string path = source.path ? *source.path : "scene";
+  std::string path = source.path ? *source.path : "scene";
   if (is_override(path)) return path;
   return fmt::format("{}:{}:{}", path, source.begin.line, source.begin.column);
 }

@@ -97,7 +97,7 @@ Interval density_bounds_at_samples(const VoxelGrid& grid, const Box& box) {
   std::vector<double> places[3];
   for (int axis = 0; axis < 3; ++axis) {
     places[axis].push_back(inside.lo[axis]);
-    for (double s = std::floor(inside.lo[axis]) + 1; s < inside.hi[axis]; ++s) places[axis].push_back(s);
+    for (int s = int(std::floor(inside.lo[axis])) + 1; s < inside.hi[axis]; ++s) places[axis].push_back(s);
     places[axis].push_back(inside.hi[axis]);
   }
   Interval bounds;

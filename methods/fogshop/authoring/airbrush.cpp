@@ -22,7 +22,7 @@ Vec3 mirrored(const Vec3& v, const Vec3& normal) { return v - 2 * v.dot(normal) 
 
 }  // namespace
 
-Flight bounce(const scene::Geometry* geometry, const Point3& from, Vec3 displacement, Vec3 velocity) {
+Flight bounce(const scene::Geometry* geometry, const Point3& from, Vec3 displacement, const Vec3& velocity) {
   Flight flight{from, velocity};
   for (int hits = 0; hits < 8; ++hits) {
     const double length = displacement.norm();

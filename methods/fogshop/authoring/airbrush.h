@@ -34,7 +34,7 @@ struct Flight {
   Point3 position;
   Vec3 velocity;
 };
-Flight bounce(const scene::Geometry* geometry, const Point3& from, Vec3 displacement, Vec3 velocity);
+Flight bounce(const scene::Geometry* geometry, const Point3& from, Vec3 displacement, const Vec3& velocity);
 
 // Runs the airbrush; particles of earlier strokes that were not frozen move with it. Ids of all that moved or were
 // born. `each_step` is called before every step and may throw to stop. Throws Error for more than 1e9 moves.
