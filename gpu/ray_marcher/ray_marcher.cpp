@@ -157,7 +157,6 @@ std::vector<std::string> RayMarcher::supports(const Scene& scene, const scene::S
   std::vector<std::string> reasons = airlight::ray_marcher::RayMarcher().supports(scene, settings);
   for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
   const airlight::ray_marcher::Options options = airlight::ray_marcher::read_options(settings, 1);
-  for (const std::string& reason : unknown_media(scene.media)) reasons.push_back(reason);
   if (!options.simd) reasons.push_back("kernel = scalar is for the CPU: shaders compute in single precision");
   std::string marched;
   for (const scene::Medium& medium : scene.media)

@@ -116,6 +116,16 @@ DEVICE_TEST_CASE("ray marcher: a lamp deep in endless fog on the GPU", "[gpu][ra
   }
 }
 
+// As many as the CPU takes.
+DEVICE_TEST_CASE("ray marcher: 32 media on the GPU", "[gpu][ray_marcher]") {
+  const auto scene = scene_of_media(32);
+  const Given given{{"steps", "64"}, {"shadow_steps", "12"}};
+  const scene::Rendering cpu = render(scene, look(), given, 1), gpu = render_gpu(scene, look(), given);
+  gpu::test::agree("32 media", cpu.film, gpu.film, {7e-6}, {"airlight", "transmittance"});
+  for (const char* counter : {"rays", "steps", "shadow_rays"})
+    CHECK(gpu.counters.at(counter) == Approx(cpu.counters.at(counter)).epsilon(2e-3));
+}
+
 DEVICE_TEST_CASE("ray marcher: exact shadows of Gaussians on the GPU", "[gpu][ray_marcher]") {
   for (const auto& [name, scene] : assorted_scenes()) {
     if (name != "Gaussians") continue;
