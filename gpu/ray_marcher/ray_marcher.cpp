@@ -166,10 +166,8 @@ std::vector<std::string> RayMarcher::supports(const Scene& scene, const scene::S
           for (const scene::Gaussian& g : sum.gaussians)
             if (g.amplitude < 0) marched = "Gaussians with negative amplitudes";
         },
-        [&](const scene::GridPointer&) { marched = "voxel grids"; },
-        [&](const scene::FogmapPointer&) { marched = "fogmaps"; },
-        [&](const scene::LegendrePointer&) { marched = "Legendre boxes"; },
-        [&](const scene::FittedPointer&) { marched = "voxel grids"; });
+        [](const scene::GridPointer&) {}, [&](const scene::FogmapPointer&) { marched = "fogmaps"; },
+        [&](const scene::LegendrePointer&) { marched = "Legendre boxes"; }, [](const scene::FittedPointer&) {});
   if (options.shadow == airlight::ray_marcher::Shadow::exact && !marched.empty())
     reasons.push_back("shadow = exact: shaders march the depths of " + marched);
   return reasons;
