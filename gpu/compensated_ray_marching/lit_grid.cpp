@@ -46,9 +46,13 @@ WayData way_of(const Ordinate& d, double edge) {
           float(-d.direction[along] / speed)};
 }
 
-std::vector<float> floats(const std::vector<std::vector<double>>& rows) {
+// Rows one after the other, each with zeros up to a multiple of `unit`.
+std::vector<float> floats(const std::vector<std::vector<double>>& rows, std::size_t unit) {
   std::vector<float> values;
-  for (const auto& row : rows) values.insert(values.end(), row.begin(), row.end());
+  for (const auto& row : rows) {
+    values.insert(values.end(), row.begin(), row.end());
+    values.resize((values.size() + unit - 1) / unit * unit);
+  }
   return values;
 }
 
@@ -92,9 +96,11 @@ LitGridOnDevice::LitGridOnDevice(Context& context, const scene::Medium& medium, 
 bool LitGridOnDevice::by_diffusion() const { return options_.grid.multiple == Options::Grid::Multiple::p1; }
 
 Program* LitGridOnDevice::program_of(const char* file, int x, int y) {
+  const int bands = options_.order * options_.order;
   return &program(context_, file, x, y,
-                  {{"BANDS", std::to_string(options_.order * options_.order)},
+                  {{"BANDS", std::to_string(bands)},
                    {"LEVELS", std::to_string(options_.grid.levels)},
+                   {"ROWS", std::to_string((bands + 3) / 4)},
                    {"SH_ORDER", std::to_string(options_.order)}});
 }
 
@@ -142,8 +148,8 @@ void LitGridOnDevice::upload_ordinates() {
     for (double& value : weighted.back()) value *= d.weight;
   }
   ways_ = std::make_unique<Buffer>(context_, "ways", ways);
-  ordinate_harmonics_ = std::make_unique<Buffer>(context_, "harmonics of ordinates", floats(harmonics));
-  weighted_ = std::make_unique<Buffer>(context_, "weighted harmonics", floats(weighted));
+  ordinate_harmonics_ = std::make_unique<Buffer>(context_, "harmonics of ordinates", floats(harmonics, 1));
+  weighted_ = std::make_unique<Buffer>(context_, "weighted harmonics", floats(weighted, 4));
 }
 
 Buffer& LitGridOnDevice::buffer(std::unique_ptr<Buffer>& of, const char* name, std::size_t bytes) {
@@ -206,7 +212,7 @@ void LitGridOnDevice::upload_directions(const IncomingLight& light) {
     harmonics.push_back(scene::evaluate_sh(options_.order, d));
   }
   towards_light_ = std::make_unique<Buffer>(context_, "directions", towards);
-  harmonics_ = std::make_unique<Buffer>(context_, "harmonics", floats(harmonics));
+  harmonics_ = std::make_unique<Buffer>(context_, "harmonics", floats(harmonics, 4));
 }
 
 void LitGridOnDevice::set_scatterer(Program& p, const Group& g) const {

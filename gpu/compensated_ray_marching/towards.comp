@@ -12,20 +12,20 @@ layout(std430, binding = AT_RESULT) readonly buffer Result { float result[]; };
 layout(std430, binding = AT_RADIANCE) writeonly buffer Radiance { vec4 radiance[]; };   // by cell
 layout(std430, binding = AT_GREATEST) buffer Greatest { uint greatest; };               // bits
 uniform int node_count, directions, fixed_directions, cells, levels, phase_kind, has_again;
-uniform float phase_g, band_moment[LEVELS];  // of the phase function
+uniform float phase_g, band_moment[LEVELS + 1];  // of the phase function, and a 0
 uniform int light_of[3];                     // of each channel
 uniform vec3 sigma_t, albedo, corner;
 uniform float cell_edge;
 uniform vec3 cells_along;  // each axis
 
-// Sum of (2l+1)/(4 pi) moment_l P_l(c) [1/sr].
+// Sum of (2l+1)/(4 pi) moment_l P_l(c) [1/sr]. An iteration takes two bands: 2048 directions with 32 bands each would exceed llvmpipe's
+// limit on loops.
 float phase_in_bands(float c) {
-  float before = 0, now = 1, sum = 0;
-  for (int l = 0; l < levels; ++l) {
-    sum += float(2 * l + 1) * band_moment[l] * now;
-    float next = (float(2 * l + 1) * c * now - float(l) * before) / float(l + 1);
-    before = now;
-    now = next;
+  float even = 1, odd = c, sum = 0;
+  for (int l = 0; l < levels; l += 2) {
+    sum += float(2 * l + 1) * band_moment[l] * even + float(2 * l + 3) * band_moment[l + 1] * odd;
+    even = (float(2 * l + 3) * c * odd - float(l + 1) * even) / float(l + 2);
+    odd = (float(2 * l + 5) * c * even - float(l + 2) * odd) / float(l + 3);
   }
   return sum * per_sphere;
 }

@@ -22,6 +22,7 @@ struct RayValues {
   int even_steps() const { return slices + slices / 2; }
   int light_steps() const { return lights > 0 ? std::max(8, slices / lights) : 0; }
   int nodes() const { return even_steps() + 1 + lights * light_steps(); }
+  double iterations() const { return 2.0 * lights * (lights + nodes()); }  // of stretch.comp, to sort the nodes
   int fields() const { return 5 + slices + 1 + std::max(2 * nodes(), 4 * slices + 1); }
   void set(Program& p) const {
     p.set("slice_count", slices);
@@ -71,7 +72,9 @@ void FogOnDevice::make_programs() {
                                                                                               : o.map           ? "1"
                                                                                                       : "2"}}));
     // A Gaussian of the tile is one iteration in each pass.
-    check_iterations(context_, std::max<double>(n, lights * (o.slices + 1.0) * (o.map ? 10 : 10 + n)),
+    check_iterations(context_,
+                     std::max({double(n) + RayValues{o.slices, lights}.iterations(),
+                               lights * (o.slices + 1.0) * (o.map ? 10 : 10 + n)}),
                      "the airlight by slices");
   }
   if (needs_.sky_volume) {
@@ -116,7 +119,7 @@ void FogOnDevice::compute(const Grid& grid, Frame& frame) {
   const bool hands_on = sliced() || needs_.sky_volume;
   const RayValues values{o.slices, sliced() ? model_.scattered_lights() : 0};
   const int fields = hands_on ? values.fields() : 0;
-  const std::size_t row_of_lists = std::size_t(columns) * (n + 1) * 4,
+  const std::size_t row_of_lists = std::size_t(columns) * (2 * n + 1) * 4,
                     row_of_rays = std::size_t(fields) * grid.width() * tile * 4;
   const std::size_t most = std::min(strip_bytes, context_.limits().storage_block);
   const int height = int(std::clamp<std::size_t>(most / std::max(row_of_lists, row_of_rays), 1, rows));

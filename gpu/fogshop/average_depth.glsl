@@ -4,10 +4,11 @@
 const float dawson_numerator[10] = float[10](DAWSON_NUMERATOR), dawson_denominator[10] = float[10](DAWSON_DENOMINATOR);
 float dawson_over_u(float w) {
   float v = min(w, DAWSON_END), over = 0.5 / max(w, DAWSON_END), p = dawson_numerator[9], q = dawson_denominator[9];
-  for (int k = 8; k >= 0; --k) {
-    p = p * v + dawson_numerator[k];
-    q = q * v + dawson_denominator[k];
-  }
+#define ADD(k)                  \
+  p = p * v + dawson_numerator[k]; \
+  q = q * v + dawson_denominator[k];
+  ADD(8) ADD(7) ADD(6) ADD(5) ADD(4) ADD(3) ADD(2) ADD(1) ADD(0)
+#undef ADD
   return w < DAWSON_END ? p / (q * v + 1) : over * (1 + over * (1 + 3 * over));
 }
 

@@ -6,20 +6,10 @@ uniform double tree_scale;              // 2^32 over the side of the root [1/m];
 uniform float tree_far;                 // [m^2]
 const int TREE_CELL = TREE_COEFFICIENTS + 2;  // a polynomial, and where its list begins and ends
 
-// x, y, z in [-1, 1].
-float cell_polynomial(int at, vec3 x) {
-  float value = 0;
-  for (int a = TREE_DEGREE, k = at + TREE_COEFFICIENTS; a >= 0; --a) {
-    float along_x = 0;
-    for (int b = TREE_DEGREE - a; b >= 0; --b) {
-      float along_y = 0;
-      for (int c = TREE_DEGREE - a - b; c >= 0; --c) along_y = along_y * x.z + tables[--k];
-      along_x = along_x * x.y + along_y;
-    }
-    value = value * x.x + along_x;
-  }
-  return value;
-}
+// x, y, z in [-1, 1]. TREE_POLYNOMIAL is Horner's form, of c(0), c(1), ... and x.
+#define c(k) tables[at + k]
+float cell_polynomial(int at, vec3 x) { return TREE_POLYNOMIAL; }
+#undef c
 
 float tree_depth(dvec3 point) {
   dvec3 place = (point - tree_corner) * tree_scale;

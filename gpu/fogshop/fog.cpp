@@ -52,7 +52,7 @@ std::vector<LightData> light_data(const airlight::fogshop::Model& model, bool ma
                     float3(frame.axes.row(0)), float(frame.tangent), float3(frame.axes.row(1)),
                     int(std::size_t(map_of_light[l]) * map_values(model.options)), float3(frame.axes.row(2)), 0});
   }
-  data.resize(most_lights);  // as many as the block has
+  data.resize(room_for_lights(data.size()));  // as many as the block has
   return data;
 }
 
@@ -160,6 +160,7 @@ Program& FogOnDevice::program(const char* file, Definitions definitions) const {
   definitions["COLOURS_FROM"] = std::to_string(table_places_.colours);
   definitions["PERMUTATION_FROM"] = std::to_string(table_places_.permutation);
   definitions["F_TABLE_FROM"] = std::to_string(table_places_.f);
+  definitions["MOST_LIGHTS"] = std::to_string(room_for_lights(model_.lights.size()));
   definitions.try_emplace("NOISE", "0");
   definitions["COLOURED"] = model_.fog.one_albedo() ? "0" : "1";
   return fogshop::program(context_, file, definitions);

@@ -34,16 +34,29 @@ float phase_of(float along) {
   return (1 - phase_g * phase_g) / (square * sqrt(square));
 }
 
+// exp(-extinction_ratio * depth), computed once where all channels have one ratio.
+vec3 decay(float depth) {
+  vec3 result = vec3(exp(-extinction_ratio.x * depth));
+  if (extinction_ratio != extinction_ratio.xxx) {
+    result.yz = exp(-extinction_ratio.yz * depth);
+  }
+  return result;
+}
+
 // erfc(|x|): what the error function lacks to its limit. Two of these can be subtracted far out in the tails of a
 // Gaussian, where two error functions are both 1.
 #if ERF_COUNT == 0
 // exp(-x^2) times a polynomial in t = 1/(1 + 0.4 |x|), a minimax fit: relative error 1.3e-7, 3.3e-7 in single precision.
-const float tail_coefficient[9] =
-    float[9](0.421612690651, 0.32186109778, 0.181567895108, 0.0684951686173, 0.0113241161312, -0.00333590900303,
-             -0.00186304571398, 0.000141774147163, 0.000196337279453);
 float tail(float x) {
-  float magnitude = min(abs(x), 1e4), t = 1 / (1 + 0.4 * magnitude), z = 2 * t - 1, sum = tail_coefficient[8];
-  for (int i = 7; i >= 0; --i) sum = sum * z + tail_coefficient[i];
+  float magnitude = min(abs(x), 1e4), t = 1 / (1 + 0.4 * magnitude), z = 2 * t - 1, sum = 0.000196337279453;
+  sum = sum * z + 0.000141774147163;
+  sum = sum * z - 0.00186304571398;
+  sum = sum * z - 0.00333590900303;
+  sum = sum * z + 0.0113241161312;
+  sum = sum * z + 0.0684951686173;
+  sum = sum * z + 0.181567895108;
+  sum = sum * z + 0.32186109778;
+  sum = sum * z + 0.421612690651;
   return exp(-magnitude * magnitude) * t * sum;
 }
 #else
@@ -66,6 +79,28 @@ Place place_at(float x) { return Place(x, tail(x)); }
 float erf_between(Place begin, Place end) {
   float d = begin.x >= 0 ? begin.tail - end.tail : end.x <= 0 ? end.tail - begin.tail : 2 - begin.tail - end.tail;
   return max(d, 0);
+}
+// From `begin` on; leaves out tails that change neither 1 nor 2 in single precision: erfc(4) is 1.6e-8.
+const float no_tail = 4;
+float erf_between(inout Place begin, float end) {
+  float d = 2;
+  begin.tail = 0;
+  if (begin.x > -no_tail || end < no_tail) {
+    bool across = begin.x <= 0 && end >= 0;
+    Place last = Place(end, 0);
+    if (!across || begin.x > -no_tail) {
+      begin.tail = tail(begin.x);
+    }
+    if (!across || end < no_tail) {
+      last.tail = tail(end);
+    }
+    d = erf_between(begin, last);
+  }
+  return d;
+}
+float erf_between(float begin, float end) {
+  Place from = Place(begin, 0);
+  return erf_between(from, end);
 }
 
 // A Gaussian as a line meets it: its optical depth between two places is depth times erf_between.
@@ -105,10 +140,13 @@ float depth_at(Crossing c, float t) { return c.depth * erf_between(c.start, plac
 
 // Optical depth of a Gaussian between two points, cut off at its radius.
 float depth_between(Gaussian g, vec3 from, vec3 direction, float length_) {
-  if (square_beside(g, from, direction) > g.radius_squared) return 0;  // most, before any exponential
-  Crossing c = cross_line(g, from, direction, length_);
-  return c.met ? depth_at(c, length_) : 0;
+  Crossing c = cross_geometry(g, from, direction, length_);
+  float depth = 0;
+  if (c.met) {  // few, before any exponential
+    depth = depth_beside(g, from, direction) * erf_between(-g.a * c.middle, g.a * (length_ - c.middle));
+  }
+  return depth;
 }
 
 // Transmittance of each channel for the depth of a channel of extinction ratio 1. Where the ratio is 0 it is 1, however deep the fog is.
-vec3 transmittance_of(float depth) { return mix(vec3(1), exp(-extinction_ratio * depth), greaterThan(extinction_ratio, vec3(0))); }
+vec3 transmittance_of(float depth) { return mix(vec3(1), decay(depth), greaterThan(extinction_ratio, vec3(0))); }

@@ -274,7 +274,7 @@ std::vector<std::string> Fogshop::supports(const Scene& scene, const scene::Sett
   std::vector<std::string> reasons = airlight::fogshop::Fogshop().supports(scene, settings);
   for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
   if (scene.lights.size() > most_lights)
-    reasons.push_back(fmt::format("{} lights: the shader has room for {}", scene.lights.size(), most_lights));
+    reasons.push_back(fmt::format("{} lights: a uniform block holds {}", scene.lights.size(), most_lights));
   return reasons;
 }
 

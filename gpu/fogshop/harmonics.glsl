@@ -14,6 +14,7 @@ uniform int cosine_at;                                 // bands of the clamped c
 uniform int point_bands_at, point_depths;              // g_l of a point light's PSF, [depth][l]; one depth: for all
 uniform int environment_bands_at, environment_depths;  // of an environment's
 uniform int environment_at;                            // its radiance L_lm, rgb
+uniform int environment_lambert_at;                    // times sqrt(4 pi/(2l+1)) and the band of the clamped cosine
 uniform float least_depth, greatest_depth;             // of the bands, even in log T
 vec3 weight_of(int l) { return row_at(weights_from + l); }
 
@@ -51,22 +52,27 @@ vec3 own_coefficient(Reflected r, int i) { return mix(rgb_at(r.low + 3 * i), rgb
 vec3 band_place(vec3 T, int depths) {
   return clamp(log(max(T, 1e-30) / least_depth) / log(greatest_depth / least_depth), 0, 1) * float(depths - 1);
 }
-// g_l at each channel's.
-vec3 band(int at, int depths, int l, vec3 place) {
-  if (depths == 1) return vec3(tables[at + l]);
-  ivec3 k = min(ivec3(depths - 2), ivec3(place));
-  vec3 g;
-  for (int c = 0; c < 3; ++c) {
-    float low = tables[at + k[c] * SH_ORDER + l];
-    g[c] = low + (place[c] - float(k[c])) * (tables[at + (k[c] + 1) * SH_ORDER + l] - low);
+// Keeps the weights of all bands: g_l at each channel's depth times the zonal factor.
+void keep_weights(int at, int depths, vec3 T) {
+  vec3 place = band_place(T, depths);
+  ivec3 k = min(ivec3(max(depths - 2, 0)), ivec3(place)), low_at = at + k * SH_ORDER;
+  int step_ = depths > 1 ? SH_ORDER : 0;
+  vec3 share = place - vec3(k);
+  bool alike = place == place.xxx;
+  for (int l = 0; l < sh_order; ++l) {
+    vec3 g = vec3(mix(tables[low_at.x + l], tables[low_at.x + step_ + l], share.x));
+    if (!alike) {
+      g.y = mix(tables[low_at.y + l], tables[low_at.y + step_ + l], share.y);
+      g.z = mix(tables[low_at.z + l], tables[low_at.z + step_ + l], share.z);
+    }
+    set_row(weights_from + l, zonal_factor(l) * g);
   }
-  return g;
 }
 
 // Reflected light that the medium at depth T from a light scatters onto the surface, per unit of I/d^2 and albedo: Eq. 25.
 vec3 reflect_point(Reflected r, vec3 to_light, vec3 T) {
-  vec3 place = band_place(T, point_depths), sum = vec3(0);
-  for (int l = 0; l < sh_order; ++l) set_row(weights_from + l, zonal_factor(l) * band(point_bands_at, point_depths, l, place));
+  vec3 sum = vec3(0);
+  keep_weights(point_bands_at, point_depths, T);
 #if TRANSFER
   for (ShPair y = first_pair(to_light); y.m < sh_order; next_pair(y, to_light)) {
     int i = y.l * (y.l + 1);
@@ -114,19 +120,25 @@ vec3 reflect_band(Reflected r, int l) {
 // The environment's light that arrives and is reflected, and that which the medium scattered on the way (per unit of albedo):
 // Eq. 27 for the average depth T.
 void reflect_environment(Reflected r, vec3 T, out vec3 direct, out vec3 scattered) {
-  vec3 place = band_place(T, environment_depths);
   direct = scattered = vec3(0);
-  for (int l = 0; l < sh_order; ++l)
-    set_row(weights_from + l,
-            has_scattered != 0 ? zonal_factor(l) * band(environment_bands_at, environment_depths, l, place) : vec3(0));
+  if (has_scattered != 0) {
+    keep_weights(environment_bands_at, environment_depths, T);
+  } else {
+    for (int l = 0; l < sh_order; ++l) set_row(weights_from + l, vec3(0));
+  }
   if (TRANSFER == 0 && (TABULATED == 0 || r.lambert)) {
-    for (ShPair y = first_pair(r.z); y.m < sh_order; next_pair(y, r.z)) {
-      int at = environment_at + 3 * y.l * (y.l + 1);
-      vec3 light = y.plus * rgb_at(at + 3 * y.m) + y.minus * rgb_at(at - 3 * y.m);
-      vec3 value = zonal_factor(y.l) * tables[cosine_at + y.l] * r.diffuse * light;
-      direct += value;
-      scattered += weight_of(y.l) * value;
+    // The clamped cosine has no odd bands but the first.
+    int order = sh_order > 2 ? sh_order - 1 | 1 : sh_order;
+    for (ShPair y = first_pair(r.z); y.m < order; next_pair(y, r.z, order)) {
+      if ((y.l & 1) == 0 || y.l == 1) {
+        int at = environment_lambert_at + 3 * y.l * (y.l + 1);
+        vec3 value = y.plus * rgb_at(at + 3 * y.m) + y.minus * rgb_at(at - 3 * y.m);
+        direct += value;
+        scattered += weight_of(y.l) * value;
+      }
     }
+    direct *= r.diffuse;
+    scattered *= r.diffuse;
   } else {
     for (int l = 0; l < sh_order; ++l) {
       vec3 value = reflect_band(r, l);

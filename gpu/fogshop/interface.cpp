@@ -62,7 +62,6 @@ std::map<std::string, std::string> dawson_definitions() {
 
 Program& program(Context& context, const std::string& file, std::map<std::string, std::string> definitions) {
   define(bindings, definitions);
-  definitions["MOST_LIGHTS"] = std::to_string(most_lights);
   Program& made = context.program(file, definitions);
   check_layouts(made, file, layouts);
   return made;

@@ -1,5 +1,6 @@
 // Constants and layouts shared by host and shaders of this method.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <map>
 #include <string>
@@ -49,8 +50,6 @@ enum Binding {
 };
 }  // namespace at
 
-constexpr int most_lights = 16;
-
 using Float3 = std::array<float, 3>;
 
 // The layouts of fog.glsl and light.glsl.
@@ -70,6 +69,13 @@ struct LightData {
   Float3 axis_z;
   float unused;
 };
+
+// Lights fill a uniform block. OpenGL promises 16 KiB for one.
+constexpr int most_lights = 16384 / sizeof(LightData);
+// Room for a number of lights, in steps, so that most scenes share programs.
+constexpr int room_for_lights(std::size_t lights) {
+  return std::min(most_lights, std::max(16, (int(lights) + 15) / 16 * 16));
+}
 
 // Definitions for average_depth.glsl.
 std::map<std::string, std::string> dawson_definitions();

@@ -30,36 +30,48 @@ void main() {
     for (int i = 0; i < loaded; ++i) {
       Gaussian g = near_block[i];
       Crossing c = cross_geometry(g, origin, direction, end);
-      if (!c.met) continue;
-      complete(c, g, origin, direction);
-      // Eq. 10, clamped; up to the middle, where the tail is 1.
-      float whole = depth_at(c, end), t = clamp(c.middle, 0, end);
-      float before = c.middle <= 0 ? 0 : c.middle >= end ? whole : c.depth * erf_between(c.start, Place(0, 1));
+      if (c.met) {
+        c.depth = depth_beside(g, origin, direction);
+        // Eq. 10, clamped; up to the middle, where the error function is 0.
+        c.start = Place(-g.a * c.middle, 0);
+        float whole = c.depth * erf_between(c.start, g.a * (end - c.middle)), t = clamp(c.middle, 0, end);
+        float before = c.middle <= 0 ? 0 : c.middle >= end ? whole : c.depth * (1 - c.start.tail);
 #if NOISE
-      whole = bent_depth(g, c, origin, direction, end);
+        whole = bent_depth(g, c, origin, direction, end);
 #endif
-      vec3 x = origin + t * direction, scattered = vec3(0);
-      depth += whole;
-      for (int l = 0; l < light_count; ++l) {
-        vec3 offset = x - lights[l].position;
-        float distance_ = length(offset);
-        Crossing towards = cross_line(g, lights[l].position, offset / max(distance_, 1e-30), distance_);
-        // Eqs. 11 to 13, exponents added before the exponential. Gaussians beyond their radius still count here.
-        float exponent = -segment_depth[l * gaussian_count + int(g.place)] - segment_depth[to_view + int(g.place)] -
-                         depth_at(towards, distance_) - before;
-        float weight = whole / (4 * pi * (distance_ * distance_ + source_radius * source_radius));
-        if (phase_g != 0) weight *= phase_of(dot(offset, direction) / max(distance_, 1e-30));  // k(alpha) of Eq. 12
-        vec3 term = extinction_ratio * weight * exp(extinction_ratio * exponent);
+        depth += whole;
+        if (light_count > 0) {
+          vec3 x = origin + t * direction, from_center = t * direction - (g.center - origin), scattered = vec3(0);
+          int place = int(g.place);
+          float beside = dot(from_center, from_center), towards_view = segment_depth[to_view + place] + before;
+          for (int l = 0; l < light_count; ++l) {
+            vec3 offset = x - lights[l].position;
+            float square = dot(offset, offset), inverse = inversesqrt(max(square, 1e-36)), distance_ = square * inverse;
+            // The light passes the centre `past` before x. Gaussians beyond their radius still count here.
+            float past = dot(from_center, offset) * inverse;
+            float of_light = g.half_depth * exp(-g.a * g.a * max(beside - past * past, 0)) *
+                             erf_between(g.a * (past - distance_), g.a * past);
+            // Eqs. 11 to 13, exponents added before the exponential.
+            vec3 term = decay(segment_depth[l * gaussian_count + place] + of_light + towards_view);
+            float weight = 1 / (square + source_radius * source_radius);
+            if (phase_g != 0) {
+              weight *= phase_of(dot(offset, direction) * inverse);  // k(alpha) of Eq. 12
+            }
+            scattered += weight * lights[l].intensity * term;
+          }
 #if COLOURED
-        term *= colour_of(int(g.place));
+          scattered *= colour_of(place);
 #endif
-        scattered += lights[l].intensity * term;
+          airlight += whole * scattered;
+        }
       }
-      airlight += scattered;
     }
   }
-  for (int l = 0; l < light_count && constant > 0; ++l)  // Eqs. 16 and 17
-    airlight += lights[l].intensity * exp(-extinction_ratio * segment_depth[to_lights + l]) *
-                homogeneous_airlight(light_from_ray(lights[l], origin, direction), end);
+  airlight *= extinction_ratio / (4 * pi);
+  if (light_count > 0 && constant > 0) {
+    for (int l = 0; l < light_count; ++l)  // Eqs. 16 and 17
+      airlight += lights[l].intensity * exp(-extinction_ratio * segment_depth[to_lights + l]) *
+                  homogeneous_airlight(light_from_ray(lights[l], origin, direction), end);
+  }
   if (visible) pixels[place_of(pixel)] = vec4(airlight * albedo, depth);
 }

@@ -1,5 +1,7 @@
 #include "gpu/fogshop/surface_pass.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 #include <numeric>
@@ -31,6 +33,23 @@ double magnitude(const scene::Scene& scene) {
 bool casts_shadows(const scene::Scene& scene) {
   return scene.surfaces.size() > 1 ||
          (scene.surfaces.size() == 1 && std::holds_alternative<scene::TriangleMesh>(scene.surfaces.front().shape));
+}
+
+// A cell's polynomial for shaders, without loops: the coefficients c(k) of CellPolynomial, `x` the place in the cell.
+std::string horner() {
+  int k = 0;
+  // From the coefficient of highest order down: sum = sum * variable + next, as long as degrees are left.
+  const auto series = [](int degree, char variable, const auto& next) {
+    std::vector<std::string> terms;
+    for (int i = 0; i <= degree; ++i) terms.push_back(next(degree - i));
+    std::string sum = terms.back();
+    for (int i = degree - 1; i >= 0; --i) sum = fmt::format("({} * x.{} + {})", sum, variable, terms[i]);
+    return sum;
+  };
+  return series(airlight::fogshop::CellPolynomial::degree, 'x', [&](int left) {
+    return series(left, 'y',
+                  [&](int rest) { return series(rest, 'z', [&](int) { return fmt::format("c({})", k++); }); });
+  });
 }
 
 }  // namespace
@@ -96,7 +115,7 @@ void SurfaceShading::upload_tables(const scene::Scene& scene, const FogOnDevice&
                           {"TRANSFER", flag(transfer)},
                           {"ENVIRONMENT", flag(environment)},
                           {"DEPTH_TREE", flag(lighting_.depths != nullptr)},
-                          {"TREE_DEGREE", std::to_string(airlight::fogshop::CellPolynomial::degree)},
+                          {"TREE_POLYNOMIAL", horner()},
                           {"TREE_COEFFICIENTS", std::to_string(airlight::fogshop::CellPolynomial::size)},
                           {"SUN", flag(lighting_.points && lighting_.points->sun())}};
   definitions.merge(dawson_definitions());

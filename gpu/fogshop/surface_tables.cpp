@@ -1,5 +1,7 @@
 #include "gpu/fogshop/surface_tables.h"
 
+#include <cmath>
+
 #include "methods/fogshop/harmonic_reflection.h"
 #include "methods/fogshop/surface_psf.h"
 #include "scene/math/sh_product.h"
@@ -63,7 +65,15 @@ void SurfaceTables::add_harmonics(const airlight::fogshop::SurfaceLighting& ligh
     light_iterations += 2.0 * size + 4.0 * order;
   }
   if (lighting.environment) {
-    uniforms["environment_at"] = add(lighting.environment->light());
+    const std::vector<Rgb>& light = lighting.environment->light();
+    uniforms["environment_at"] = add(light);
+    // Reflected by Lambert's reflectance, without its albedo: zonal about the normal.
+    const std::vector<double> cosine = airlight::fogshop::clamped_cosine(order);
+    std::vector<Rgb> reflected;
+    for (int l = 0; l < order; ++l)
+      for (int i = l * l; i < (l + 1) * (l + 1); ++i)
+        reflected.push_back(light[i] * (cosine[l] * std::sqrt(4 * pi / (2 * l + 1))));
+    uniforms["environment_lambert_at"] = add(reflected);
     uniforms["environment_depths"] = 1;
     if (lighting.environment->spreads()) {
       uniforms["environment_bands_at"] = add(lighting.environment->bands().values());

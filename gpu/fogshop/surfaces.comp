@@ -68,16 +68,17 @@ void main() {
         if (!(distance_ > 0)) continue;
         dvec3 to_light = offset / distance_;
         float d = float(distance_), cosine = float(dot(normal, to_light));
-        vec3 irradiance = lights[l].intensity / (d * d), towards = vec3(to_light), reflectance = vec3(0);
+        vec3 reflectance = vec3(0);
         if (cosine > 0) {
-          reflectance = brdf(material, n, towards, to_view);
+          reflectance = brdf(materials[surface], n, vec3(to_light), to_view);  // read again: it would take registers in the tree
           if (any(greaterThan(reflectance, vec3(0))) &&
               in_shadow(primitive, point + nudge * normal, to_light, distance_))
             reflectance = vec3(0);
         }
         if (has_scattered == 0 && !any(greaterThan(reflectance, vec3(0)))) continue;
         float depth = depth_from_light(l, vec3(point)) + constant * d;
-        direct += reflectance * cosine * irradiance * exp(-depth * extinction_ratio);
+        vec3 irradiance = lights[l].intensity / (d * d), towards = vec3(to_light);
+        direct += reflectance * cosine * irradiance * decay(depth);
 #if SUN
         scattered += irradiance * reflect_sun(material, n, to_view, towards, depth * extinction_ratio);
 #elif HARMONICS

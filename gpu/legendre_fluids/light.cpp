@@ -49,18 +49,21 @@ double widest_panel(const RayOptions& options) {
 
 class PreparedLightGpu final : public scene::Prepared, public TakesDensity {
  public:
-  PreparedLightGpu(std::shared_ptr<const Scene>, const RayOptions&, std::string settings);
+  PreparedLightGpu(std::shared_ptr<const Scene>, const RayOptions&, scene::Settings given);
 
   std::vector<scene::Stage> stages() const override;
   std::vector<scene::StageTime> prepare_times() const override { return times_; }
   scene::Rendering render(const View&, const Execution&) const override;
+  std::optional<std::vector<scene::StageTime>> next(std::shared_ptr<const Scene>, const Execution&) override;
   scene::Rendering render_once(const View&, const Execution&) const;
-  bool take(const DensityOnDevice& d) override {
+  bool take(std::size_t medium, const DensityOnDevice& d) override {
     const Use use(context_);
-    return media_ && media_->take(0, d.state, d.field, d.coefficients, d.box);
+    return media_ && media_->take(medium, d.state, d.field, d.coefficients, d.box);
   }
 
  private:
+  std::vector<scene::StageTime> prepare(std::shared_ptr<const Scene>);
+  void find_programs(bool shadow);
   void follow_round(const View&, int round, bool shadowed) const;
   bool negative() const { return media_ && media_->negative(); }
   bool shadowed() const { return shadows_ != nullptr; }
@@ -71,11 +74,11 @@ class PreparedLightGpu final : public scene::Prepared, public TakesDensity {
   void dim(const View&, const scene::Light&) const;
   void compose(std::size_t pixels, const Buffer& lit, const Buffer* seen) const;
 
-  std::shared_ptr<const Scene> scene_;
+  scene::Settings given_;
   RayOptions options_;
-  std::string settings_;
-  airlight::legendre_fluids::LitMedia lit_;
   Context& context_;
+  std::shared_ptr<const Scene> scene_;
+  LitMedia lit_;
   std::unique_ptr<LightMediaOnDevice> media_;  // null: no medium extinguishes
   std::unique_ptr<FirstHits> first_hits_;      // null: no surface ends a ray
   std::unique_ptr<Backdrops> backdrops_;       // null: there are none
@@ -85,45 +88,68 @@ class PreparedLightGpu final : public scene::Prepared, public TakesDensity {
   std::vector<bool> shadowed_;         // by light: may surfaces stand before it
   mutable int rounds_ = first_rounds;  // of stretches, where a density may be below 0 or surfaces may shade a ray
   double negative_share_ = 0;
+  std::optional<Traffic> next_;  // of next(), if there was one
   mutable Frame frame_;
   std::vector<scene::StageTime> times_;
 };
 
-PreparedLightGpu::PreparedLightGpu(std::shared_ptr<const Scene> scene, const RayOptions& options, std::string settings)
-    : scene_(std::move(scene)),
-      options_(options),
-      settings_(std::move(settings)),
-      lit_(*scene_, 0),
-      context_(Context::get()),
-      frame_(context_) {
+PreparedLightGpu::PreparedLightGpu(std::shared_ptr<const Scene> scene, const RayOptions& options, scene::Settings given)
+    : given_(std::move(given)), options_(options), context_(Context::get()), frame_(context_) {
+  times_ = prepare(std::move(scene));
+}
+
+// For a first frame, or one that keeps what the frame before has in common with it.
+std::vector<scene::StageTime> PreparedLightGpu::prepare(std::shared_ptr<const Scene> given) {
   const Use use(context_);
-  StageTimer timer(context_);
-  timer.begin("upload");
-  if (wavelet_fog::something_ends_rays(*scene_)) first_hits_ = std::make_unique<FirstHits>(context_, *scene_);
-  if (!scene_->backdrops.empty()) backdrops_ = std::make_unique<Backdrops>(context_, *scene_);
-  surfaces_ = std::make_unique<wavelet_fog::SurfaceLight>(context_, *scene_, first_hits_.get());
+  const Traffic traffic = context_.traffic();
+  frame_.timer.restart();
+  const std::shared_ptr<const Scene> before = std::exchange(scene_, with_sky(std::move(given), options_));
+  if (!before || !scene::same_surfaces(*before, *scene_)) {
+    surfaces_.reset();
+    first_hits_.reset();
+    if (wavelet_fog::something_ends_rays(*scene_)) first_hits_ = std::make_unique<FirstHits>(context_, *scene_);
+  }
+  backdrops_ = scene_->backdrops.empty() ? nullptr : std::make_unique<Backdrops>(context_, *scene_);
+  const bool same_lamps = surfaces_ && surfaces_->become(*scene_);
+  if (!same_lamps) surfaces_ = std::make_unique<wavelet_fog::SurfaceLight>(context_, *scene_, first_hits_.get());
+  const LitMedia media_before = std::exchange(lit_, LitMedia(*scene_, &lit_));
+  const bool same_media = media_ ? media_->become(media_before) : !any_medium();
+  if (!same_media) media_ = any_medium() ? std::make_unique<LightMediaOnDevice>(context_, lit_, options_) : nullptr;
+  negative_share_ = lit_.greatest_negative_share();
+  shadowed_ = shadowed_lights(*scene_, lit_);
+  const bool shadow = scatters() && std::find(shadowed_.begin(), shadowed_.end(), true) != shadowed_.end();
+  if (!composition_ || !same_media || !same_lamps || shadow != shadowed()) find_programs(shadow);
+  if ((context_.traffic() - traffic).bytes_up == 0) return {};
+  frame_.timer.stage("upload");
+  return frame_.timer.times();
+}
+
+void PreparedLightGpu::find_programs(bool shadow) {
+  rays_ = dim_ = cut_ = columns_ = shadows_ = nullptr;
   Definitions definitions{{"MEDIA", "0"}};
   if (any_medium()) {
-    media_ = std::make_unique<LightMediaOnDevice>(context_, lit_, options_);
     definitions = media_->definitions();
-    shadowed_ = shadowed_lights(*scene_, lit_);
-    const bool any_shadow = scatters() && std::find(shadowed_.begin(), shadowed_.end(), true) != shadowed_.end();
-    definitions["SHADOWED"] = std::to_string(int(any_shadow));
-    if (any_shadow) shadows_ = &program(context_, "light_shadows", ray_tile, ray_tile, definitions);
+    definitions["SHADOWED"] = std::to_string(int(shadow));
+    if (shadow) shadows_ = &program(context_, "light_shadows", ray_tile, ray_tile, definitions);
     rays_ = &program(context_, "light_rays", ray_tile, ray_tile, definitions);
     if (wavelet_fog::lamps_light_surfaces(*scene_))
       dim_ = &program(context_, "light_dim", ray_tile, ray_tile, definitions);
-    for (const LitMedium& m : lit_.media)
-      if (m.field->negative())
-        negative_share_ = std::max(
-            negative_share_, airlight::legendre_fluids::negative_share(m.field->shape(), m.field->coefficients()));
     if (negative()) {
       cut_ = &program(context_, "light_cut", ray_tile, ray_tile, definitions);
       columns_ = &program(context_, "light_columns", 32, 1, definitions);
     }
   }
   composition_ = &program(context_, "light_composition", 64, 1, definitions);
-  times_ = timer.times();
+}
+
+std::optional<std::vector<scene::StageTime>> PreparedLightGpu::next(std::shared_ptr<const Scene> scene,
+                                                                    const Execution&) {
+  // A medium may be one that the paper's systems draw.
+  if (given_.text("variant") != "ray" || !LegendreLight().supports(*scene, given_).empty()) return std::nullopt;
+  const Traffic before = context_.traffic();
+  std::vector<scene::StageTime> times = prepare(std::move(scene));
+  next_ = context_.traffic() - before;
+  return times;
 }
 
 bool PreparedLightGpu::scatters() const {
@@ -320,10 +346,13 @@ scene::Rendering PreparedLightGpu::render_once(const View& view, const Execution
   frame_.timer.begin("composition");
   compose(pixels, lit, seen);
   frame_.finish(result);
+  if (next_) result.counters.merge(next_->counters("next_"));
   result.counters["rays"] = double(pixels);
   result.counters["negative_share"] = negative_share_;
-  result.film.metadata = {
-      {"method", "legendre_fluids_gpu"}, {"settings", settings_}, {"scene", scene_->name}, {"hash", scene_->hash}};
+  result.film.metadata = {{"method", "legendre_fluids_gpu"},
+                          {"settings", given_.canonical()},
+                          {"scene", scene_->name},
+                          {"hash", scene_->hash}};
   if (scene::has_environment(*scene_) && !lit_.lights.empty())
     result.film.metadata["warning"] =
         fmt::format("legendre_fluids_gpu: {} directional lights stand for each environment (environment_directions)",
@@ -333,10 +362,10 @@ scene::Rendering PreparedLightGpu::render_once(const View& view, const Execution
 
 }  // namespace
 
-bool draw_flow(scene::Prepared& picture, const scene::Flow& flow) {
+bool draw_flow(scene::Prepared& picture, const scene::Flow& flow, int density, std::size_t medium) {
   auto* prepared = dynamic_cast<TakesDensity*>(&picture);
-  const std::optional<DensityOnDevice> density = density_on_device(flow);
-  return prepared && density && prepared->take(*density);
+  const std::optional<DensityOnDevice> there = density_on_device(flow, density);
+  return prepared && there && prepared->take(medium, *there);
 }
 
 std::string LegendreLight::about() const {
@@ -355,7 +384,7 @@ std::vector<std::string> LegendreLight::supports(const Scene& scene, const scene
     for (const std::string& reason : unsupported_paper(scene, options.paper)) reasons.push_back(reason);
   if (!reasons.empty() || options.variant == airlight::legendre_fluids::LightOptions::Variant::paper) return reasons;
   const auto lit = with_sky({std::shared_ptr<const Scene>(), &scene}, options.ray);
-  for (const std::string& reason : unsupported(LitMedia(*lit, 0))) reasons.push_back(reason);
+  for (const std::string& reason : unsupported(LitMedia(*lit))) reasons.push_back(reason);
   return reasons;
 }
 
@@ -364,8 +393,8 @@ std::unique_ptr<scene::Prepared> LegendreLight::prepare_supported(std::shared_pt
                                                                   const Execution&) const {
   const airlight::legendre_fluids::LightOptions options = airlight::legendre_fluids::read_light_options(settings);
   if (options.variant == airlight::legendre_fluids::LightOptions::Variant::paper)
-    if (auto prepared = prepare_paper(scene, options.paper, settings.canonical())) return prepared;
-  return std::make_unique<PreparedLightGpu>(with_sky(std::move(scene), options.ray), options.ray, settings.canonical());
+    if (auto prepared = prepare_paper(scene, options.paper, settings)) return prepared;
+  return std::make_unique<PreparedLightGpu>(std::move(scene), options.ray, settings);
 }
 
 }  // namespace airlight::gpu::legendre_fluids

@@ -19,9 +19,10 @@ class LegendreLight final : public scene::Renderer {
                                                      const scene::Execution&) const override;
 };
 
-// The density of the first of the scene's media that extinguish becomes that of a flow of LegendreFluids in three dimensions: from step
-// to picture nothing leaves the device. A density below 0 anywhere is drawn towards its mean until it is not. False, and nothing is done,
-// where the picture was not prepared by LegendreLight, or its medium is no Legendre box of the flow's box and coefficients.
-bool draw_flow(scene::Prepared&, const scene::Flow&);
+// A density of a flow of LegendreFluids in three dimensions becomes the density of a medium, counted among the scene's media that extinguish:
+// from step to picture nothing leaves the device. Variant `ray` draws a density below 0 towards its mean until it is not. False, and nothing is
+// done, where the picture was not prepared by LegendreLight, where its medium is no Legendre box of the flow's box and coefficients, or where
+// variant `paper` has several media.
+bool draw_flow(scene::Prepared&, const scene::Flow&, int density = 0, std::size_t medium = 0);
 
 }  // namespace airlight::gpu::legendre_fluids

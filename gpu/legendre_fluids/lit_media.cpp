@@ -24,6 +24,10 @@ TensorShape shape_of(const LitMedia& media) {
   return shape;
 }
 
+bool any_negative(const LitMedia& media) {
+  return std::any_of(media.media.begin(), media.media.end(), [](const LitMedium& m) { return m.field->negative(); });
+}
+
 std::vector<float> coefficients_of(const LitMedia& media) {
   const TensorShape all = shape_of(media);
   const int row = 4 * fours(all[2]);
@@ -107,9 +111,18 @@ LightMediaOnDevice::LightMediaOnDevice(Context& context, const LitMedia& media,
   definitions_["FOURS_Z"] = std::to_string(fours(shape[2]));
 }
 
-bool LightMediaOnDevice::negative() const {
-  return std::any_of(media_.media.begin(), media_.media.end(), [](const LitMedium& m) { return m.field->negative(); });
+bool LightMediaOnDevice::become(const LitMedia& before) {
+  if (before.media.size() != media_.media.size() || before.coefficients != media_.coefficients ||
+      shape_of(before) != shape_of(media_) || any_negative(before) != negative())
+    return false;
+  const auto same = [](const LitMedium& a, const LitMedium& b) { return a.field == b.field; };
+  if (flows_ || !std::equal(before.media.begin(), before.media.end(), media_.media.begin(), same))
+    densities_.upload(coefficients_of(media_));
+  flows_ = false;
+  return true;
 }
+
+bool LightMediaOnDevice::negative() const { return any_negative(media_); }
 
 // One medium has two ends and three planes where light changes its face; of several each has twelve, and all count in each.
 int LightMediaOnDevice::stretches() const { return count() == 1 ? 4 : 14 * count(); }
@@ -148,6 +161,7 @@ bool LightMediaOnDevice::take(std::size_t medium, const Buffer& state, std::size
     p.set("part", part);
     p.dispatch(part == 1 ? 8 * n * n * n : n * n * n);
   }
+  flows_ = true;
   return true;
 }
 

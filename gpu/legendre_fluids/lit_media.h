@@ -21,6 +21,10 @@ class LightMediaOnDevice {
   LightMediaOnDevice(Context&, const airlight::legendre_fluids::LitMedia&,
                      const airlight::legendre_fluids::RayOptions&);
 
+  // The media that it keeps by reference were `before` and are now others. Uploads their densities where these differ. False, and nothing is
+  // done: other definitions are needed.
+  bool become(const airlight::legendre_fluids::LitMedia& before);
+
   int count() const { return int(media_.media.size()); }
   // Definitions for a program that includes light_media.glsl.
   const Definitions& definitions() const { return definitions_; }
@@ -39,6 +43,7 @@ class LightMediaOnDevice {
   const airlight::legendre_fluids::LitMedia& media_;
   Definitions definitions_;
   Buffer densities_, rule_;
+  bool flows_ = false;             // a density is a flow's
   std::unique_ptr<Buffer> least_;  // of take(), and its program
   Program* taking_ = nullptr;
 };

@@ -51,21 +51,18 @@ PaperSystems::PaperSystems(Context& context, const airlight::legendre_fluids::Pa
                            const airlight::legendre_fluids::PaperOptions& options, const std::array<bool, 3>& moving)
     : context_(context),
       media_(media),
-      field_(*media.density),
-      medium_(*media.medium),
       lights_(lights),
       options_(options),
-      shape_(airlight::legendre_fluids::intensity_shape(field_.shape(), options.n, moving)) {
+      shape_(airlight::legendre_fluids::intensity_shape(field().shape(), options.n, moving)),
+      channels_(find_channels()),
+      density_shape_(field().shape()),
+      box_(field().box()),
+      albedo_is_field_(media.scattering[0] != nullptr) {
   group_ = unknowns() > 1000 ? 256 : 128;
   tolerance_ = options.solver.tolerance * (upwind() ? 1 : squared);
-  const DensityProduct product(field_.coefficients(), field_.shape(), shape_, options.truncation);
-  for (int c = 0; c < 3; ++c) {
-    const auto same = std::find(extinctions_.begin(), extinctions_.end(), medium_.sigma_t[c]);
-    extinction_of_[std::size_t(c)] = int(same - extinctions_.begin());
-    if (same == extinctions_.end()) extinctions_.push_back(medium_.sigma_t[c]);
-  }
-  find_channels();
-  direct_.count = int(lights.size() * extinctions_.size());
+  const DensityProduct product(field().coefficients(), field().shape(), shape_, options.truncation);
+  scattered_.count = channels_.systems;
+  direct_.count = int(lights.size() * channels_.extinctions.size());
   lay_out_tables(product);
   lay_out_work(product);
   for (Kind* kind : {&direct_, &scattered_})
@@ -74,34 +71,57 @@ PaperSystems::PaperSystems(Context& context, const airlight::legendre_fluids::Pa
   right_ = &program(context, "paper_right", group_, 1, definitions_);
   steps_ = &program(context, upwind() ? "paper_gmres" : "paper_gradients", group_, 1, definitions_);
   kept_ = &program(context, "paper_kept", group_, 1, definitions_);
+  upload_density(product);
+}
+
+void PaperSystems::upload_density(const DensityProduct& product) {
   // The density, then what scatters of it in each channel.
   std::vector<double> at_points(product.density().begin(), product.density().end());
   for (const scene::LegendrePointer& part : media_.scattering)
     if (part) {
-      const DensityProduct scatters(part->coefficients(), part->shape(), shape_, options.truncation);
+      const DensityProduct scatters(part->coefficients(), part->shape(), shape_, options_.truncation);
       at_points.insert(at_points.end(), scatters.density().begin(), scatters.density().end());
     }
   points_->upload(at_points);
-  const std::vector<float> coefficients(field_.coefficients().data(),
-                                        field_.coefficients().data() + field_.coefficients().size());
-  densities_ = std::make_unique<Buffer>(context, "coefficients of the density", coefficients);
+  refill(densities_, context_, "coefficients of the density",
+         std::vector<float>(field().coefficients().begin(), field().coefficients().end()));
   density_from(*densities_, 0);
 }
 
+bool PaperSystems::become(bool same_densities, const std::array<bool, 3>& moving) {
+  const Channels channels = find_channels();
+  if (field().shape() != density_shape_ || field().box().lo != box_.lo || field().box().hi != box_.hi ||
+      airlight::legendre_fluids::intensity_shape(field().shape(), options_.n, moving) != shape_ ||
+      channels.systems != scattered_.count || int(lights_.size() * channels.extinctions.size()) != direct_.count ||
+      channels.extinctions.size() != channels_.extinctions.size() || bool(media_.scattering[0]) != albedo_is_field_)
+    return false;
+  channels_ = channels;
+  if (!same_densities) upload_density({field().coefficients(), field().shape(), shape_, options_.truncation});
+  const std::vector<double> before = tables_;
+  set_directions(view_);
+  if (tables_ != before) table_->upload(tables_);
+  return true;
+}
+
 // E_s is linear in the light: channels of one extinction, whose lights differ by a factor only, are one system.
-void PaperSystems::find_channels() {
+PaperSystems::Channels PaperSystems::find_channels() const {
+  Channels all;
   std::array<Eigen::VectorXd, 3> light;
   for (int c = 0; c < 3; ++c) {
+    const auto found = std::find(all.extinctions.begin(), all.extinctions.end(), medium().sigma_t[c]);
+    all.extinction_of[std::size_t(c)] = int(found - all.extinctions.begin());
+    if (found == all.extinctions.end()) all.extinctions.push_back(medium().sigma_t[c]);
     Eigen::VectorXd& mine = light[std::size_t(c)];
     mine.resize(Eigen::Index(lights_.size()));
     for (std::size_t l = 0; l < lights_.size(); ++l) mine[Eigen::Index(l)] = lights_[l].irradiance[c];
     const double most = mine.maxCoeff();
-    scale_[c] = (media_.scattering[0] ? 1 : medium_.albedo[c]) * most;
+    all.scale[c] = (media_.scattering[0] ? 1 : medium().albedo[c]) * most;
     if (most > 0) mine /= most;
     int same = 0;
     while (same < c && (!media_.alike(std::size_t(same), std::size_t(c)) || light[std::size_t(same)] != mine)) ++same;
-    system_of_[std::size_t(c)] = same < c ? system_of_[std::size_t(same)] : scattered_.count++;
+    all.system_of[std::size_t(c)] = same < c ? all.system_of[std::size_t(same)] : all.systems++;
   }
+  return all;
 }
 
 void PaperSystems::number(const char* name, std::size_t value) { definitions_[name] = std::to_string(value); }
@@ -109,7 +129,7 @@ void PaperSystems::number(const char* name, std::size_t value) { definitions_[na
 // Tables, and where each of them begins.
 void PaperSystems::lay_out_tables(const DensityProduct& product) {
   const TensorShape& m = product.points();
-  definitions_ = {{"N", three(shape_)}, {"M", three(m)}, {"R", three(field_.shape())}};
+  definitions_ = {{"N", three(shape_)}, {"M", three(m)}, {"R", three(field().shape())}};
   definitions_["VALUES_AT"] = three(add_tables(product.matrices().values, tables_));
   definitions_["OF_DENSITY_AT"] = three(add_tables(product.matrices().of_density, tables_));
   definitions_["ANALYSIS_AT"] = three(add_tables(product.matrices().analysis, tables_));
@@ -135,13 +155,13 @@ void PaperSystems::lay_out_work(const DensityProduct& product) {
   number("UNKNOWNS", n);
   number("SYSTEMS", systems);
   number("LIGHTS", lights_.size());
-  number("EXTINCTIONS", extinctions_.size());
+  number("EXTINCTIONS", channels_.extinctions.size());
   number("UPWIND", upwind());
   most_steps_ =
       upwind() ? int(std::min<std::size_t>({most_vectors, n, room_of_vectors / (8 * n * systems)})) : most_gradients;
   number("ROOM", std::size_t(most_steps_));
   const std::size_t points = std::size_t(scene::tensor_size(m)), steps = std::size_t(most_steps_);
-  const std::size_t region = std::size_t(std::max(most_on_the_way(shape_, m), most_on_the_way(field_.shape(), m)));
+  const std::size_t region = std::size_t(std::max(most_on_the_way(shape_, m), most_on_the_way(field().shape(), m)));
   number("ALL_POINTS", points);
   number("REGION", region);
   std::size_t size = 0;
@@ -174,7 +194,7 @@ void PaperSystems::lay_out_work(const DensityProduct& product) {
   direct_values_ = doubles("direct light", std::size_t(direct_.count) * n);
   faces_ = std::make_unique<Buffer>(
       context_, "scattered light and density",
-      4 * (series * std::size_t(scattered_.count) + std::size_t(scene::tensor_size(field_.shape()))),
+      4 * (series * std::size_t(scattered_.count) + std::size_t(scene::tensor_size(field().shape()))),
       Contents::undefined);
 }
 
@@ -182,7 +202,7 @@ void PaperSystems::lay_out_work(const DensityProduct& product) {
 void PaperSystems::set_directions(const Vec3& view) {
   std::vector<double> all;
   for (std::size_t d = 0; d <= lights_.size(); ++d) {
-    const Vec3 rate = 2 * (d < lights_.size() ? Vec3(-lights_[d].to_light) : view).cwiseQuotient(field_.box().size());
+    const Vec3 rate = 2 * (d < lights_.size() ? Vec3(-lights_[d].to_light) : view).cwiseQuotient(field().box().size());
     const LightAxes axes(shape_, rate, options_.solver);
     for (const Eigen::MatrixXd& along : axes.along) add_rows(along, all);
     for (std::size_t a = 0; a < 3; ++a)
@@ -206,8 +226,8 @@ void PaperSystems::density_from(const Buffer& coefficients, std::size_t first) {
 
 bool PaperSystems::take(const DensityOnDevice& d) {
   const int n = d.coefficients;
-  if (media_.scattering[0] || field_.shape() != TensorShape{n, n, n} || field_.box().lo != d.box.lo ||
-      field_.box().hi != d.box.hi)
+  if (media_.scattering[0] || field().shape() != TensorShape{n, n, n} || field().box().lo != d.box.lo ||
+      field().box().hi != d.box.hi)
     return false;
   density_from(d.state, d.field * std::size_t(n * n * n));
   return true;
@@ -216,11 +236,12 @@ bool PaperSystems::take(const DensityOnDevice& d) {
 void PaperSystems::set(Program& p, const Kind& kind) const {
   for (int s = 0; s < kind.count; ++s) {
     const auto system = std::size_t(s);
-    const auto channel = std::size_t(std::find(system_of_.begin(), system_of_.end(), s) - system_of_.begin());
+    const auto channel =
+        std::size_t(std::find(channels_.system_of.begin(), channels_.system_of.end(), s) - channels_.system_of.begin());
     const bool scatters = &kind == &scattered_;
-    p.set_double(at_index("sigma_t", system),
-                 scatters ? medium_.sigma_t[Eigen::Index(channel)] : extinctions_[system % extinctions_.size()]);
-    p.set(at_index("directions", system), int(scatters ? lights_.size() : system / extinctions_.size()));
+    p.set_double(at_index("sigma_t", system), scatters ? medium().sigma_t[Eigen::Index(channel)]
+                                                       : channels_.extinctions[system % channels_.extinctions.size()]);
+    p.set(at_index("directions", system), int(scatters ? lights_.size() : system / channels_.extinctions.size()));
   }
 }
 
@@ -235,15 +256,15 @@ void PaperSystems::start(const Kind& kind) {
   set(p, kind);
   p.set("scatters", scatters);
   for (int c = 0; c < 3 && scatters; ++c) {
-    const auto system = std::size_t(system_of_[std::size_t(c)]);
-    p.set(at_index("extinctions", system), extinction_of_[std::size_t(c)]);
+    const auto system = std::size_t(channels_.system_of[std::size_t(c)]);
+    p.set(at_index("extinctions", system), channels_.extinction_of[std::size_t(c)]);
     p.set(at_index("scatterers", system), media_.scattering[0] ? 1 + c : 0);
     double most = 0;
     for (const scene::DirectionalLight& light : lights_) most = std::max(most, light.irradiance[c]);
     for (std::size_t l = 0; l < lights_.size(); ++l) {
-      const double omega = phase_value(medium_.phase, std::clamp(view_.dot(-lights_[l].to_light), -1.0, 1.0));
+      const double omega = phase_value(medium().phase, std::clamp(view_.dot(-lights_[l].to_light), -1.0, 1.0));
       p.set_double(at_index("amounts", system * lights_.size() + l),
-                   most > 0 ? medium_.sigma_t[c] * omega * lights_[l].irradiance[c] / most : 0);
+                   most > 0 ? medium().sigma_t[c] * omega * lights_[l].irradiance[c] / most : 0);
     }
   }
   p.dispatch(kind.count * group_);
@@ -308,7 +329,8 @@ std::vector<Eigen::VectorXd> PaperSystems::direct() const {
 
 std::array<int, 3> PaperSystems::first_of_direct(std::size_t light) const {
   std::array<int, 3> first;
-  for (std::size_t c = 0; c < 3; ++c) first[c] = (int(light * extinctions_.size()) + extinction_of_[c]) * unknowns();
+  for (std::size_t c = 0; c < 3; ++c)
+    first[c] = (int(light * channels_.extinctions.size()) + channels_.extinction_of[c]) * unknowns();
   return first;
 }
 

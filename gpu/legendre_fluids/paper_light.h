@@ -18,10 +18,14 @@ constexpr double most_weight = 1000;  // of least squares: single precision's 7e
 
 class PaperSystems {
  public:
-  // Needs a medium that extinguishes and at least one light, all of them shining. The object keeps references to its arguments.
+  // Needs a medium that extinguishes and at least one light, all of them shining. The object keeps references to medium and lights.
   // Throws Unavailable where the device has no room for its buffers.
   PaperSystems(Context&, const airlight::legendre_fluids::PaperMedium&, const std::vector<scene::DirectionalLight>&,
                const airlight::legendre_fluids::PaperOptions&, const std::array<bool, 3>& moving);
+
+  // Medium and lights, which it keeps by reference, have become those of another frame. Uploads densities, where these are others, and
+  // directions. False, and nothing is done: systems of another layout are needed. E_d is that of before.
+  bool become(bool same_densities, const std::array<bool, 3>& moving);
 
   // E_d of all lights, to the end: waits. Throws Error where a system does not converge.
   void begin();
@@ -45,8 +49,8 @@ class PaperSystems {
   const Buffer& direct_values() const { return *direct_values_; }
   std::array<int, 3> first_of_direct(std::size_t light) const;
   const Definitions& definitions() const { return definitions_; }
-  std::array<int, 3> system_of() const { return system_of_; }
-  Rgb scale() const { return scale_; }
+  std::array<int, 3> system_of() const { return channels_.system_of; }
+  Rgb scale() const { return channels_.scale; }
   const scene::TensorShape& shape() const { return shape_; }
 
  private:
@@ -56,11 +60,22 @@ class PaperSystems {
     int count = 0, rounds = 0, iterations = 0;  // steps: of a frame, of all systems of the last one
     std::unique_ptr<Buffer> status = {};
   };
+  // What of medium and lights the layout depends on, beside their number.
+  struct Channels {
+    std::vector<double> extinctions;     // different ones
+    std::array<int, 3> extinction_of{};  // of each channel
+    std::array<int, 3> system_of{};      // of each channel, for E_s
+    int systems = 0;                     // of E_s
+    Rgb scale = Rgb::Ones();
+  };
+  Channels find_channels() const;
+  void upload_density(const airlight::legendre_fluids::DensityProduct&);
+  const scene::LegendreBox& field() const { return *media_.density; }
+  const scene::Medium& medium() const { return *media_.medium; }
   void lay_out_tables(const airlight::legendre_fluids::DensityProduct&);
   void lay_out_work(const airlight::legendre_fluids::DensityProduct&);
   void number(const char* name, std::size_t value);  // a definition
   void set_directions(const Vec3& view);
-  void find_channels();
   void density_from(const Buffer&, std::size_t first);
   void set(Program&, const Kind&) const;
   void start(const Kind&);
@@ -73,16 +88,14 @@ class PaperSystems {
 
   Context& context_;
   const airlight::legendre_fluids::PaperMedium& media_;
-  const scene::LegendreBox& field_;  // the density
-  const scene::Medium& medium_;
   const std::vector<scene::DirectionalLight>& lights_;
   airlight::legendre_fluids::PaperOptions options_;
   scene::TensorShape shape_;
   Definitions definitions_;
-  std::vector<double> extinctions_;     // different ones
-  std::array<int, 3> extinction_of_{};  // of each channel
-  std::array<int, 3> system_of_{};      // of each channel, for E_s
-  Rgb scale_ = Rgb::Ones();
+  Channels channels_;
+  scene::TensorShape density_shape_;
+  Box box_;
+  bool albedo_is_field_ = false;
   std::vector<double> tables_;
   std::size_t directions_at_ = 0;
   Vec3 view_ = Vec3::Zero();  // that tables have

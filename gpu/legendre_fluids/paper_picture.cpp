@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "gpu/frame.h"
+#include "gpu/legendre_fluids/light.h"
 #include "gpu/legendre_fluids/paper_light.h"
 #include "gpu/raster/backdrops.h"
 #include "gpu/view_uniforms.h"
@@ -49,13 +50,17 @@ bool ends_rays(const Scene& scene) {
 
 class PreparedPaperGpu final : public scene::Prepared, public TakesDensity {
  public:
-  PreparedPaperGpu(std::shared_ptr<const Scene>, const airlight::legendre_fluids::PaperOptions&, std::string settings);
+  PreparedPaperGpu(std::shared_ptr<const Scene>, const airlight::legendre_fluids::PaperOptions&, scene::Settings given);
   std::vector<scene::Stage> stages() const override;
   std::vector<scene::StageTime> prepare_times() const override { return times_; }
   scene::Rendering render(const View&, const Execution&) const override;
-  bool take(const DensityOnDevice&) override;
+  std::optional<std::vector<scene::StageTime>> next(std::shared_ptr<const Scene>, const Execution&) override;
+  bool take(std::size_t medium, const DensityOnDevice&) override;
 
  private:
+  std::vector<scene::StageTime> prepare(std::shared_ptr<const Scene>);
+  void find_surfaces(const Scene* before);
+  void find_programs();
   // Where rays end, and what they see there.
   struct Ends {
     const Buffer *distances = nullptr, *seen = nullptr, *lit = nullptr;
@@ -67,59 +72,120 @@ class PreparedPaperGpu final : public scene::Prepared, public TakesDensity {
 
   std::shared_ptr<const Scene> scene_;
   airlight::legendre_fluids::PaperOptions options_;
-  std::string settings_;
+  scene::Settings given_;
   Context& context_;
   airlight::legendre_fluids::PaperMedium media_;
   scene::LegendrePointer field_;  // of those; null where nothing extinguishes
   std::vector<scene::DirectionalLight> lights_;
-  std::array<bool, 3> moving_;
+  std::array<bool, 3> moving_{};
   std::unique_ptr<PaperSystems> systems_;                // null: no light scatters
   std::unique_ptr<FirstHits> first_hits_;                // null: no surface ends a ray
   std::unique_ptr<Backdrops> backdrops_;                 // null: there are none
   std::unique_ptr<wavelet_fog::SurfaceLight> surfaces_;  // null: nothing can be seen behind the medium
   Program *image_ = nullptr, *dim_ = nullptr;
-  double negative_direct_ = 0;
-  bool flows_ = false;          // the density is a flow's
-  mutable bool stale_ = false;  // E_d is of another density
+  double negative_direct_ = 0, negative_density_ = 0;
+  int direct_made_ = 0;          // lights whose E_d is solved for this frame
+  bool flows_ = false;           // the density is a flow's
+  bool unseen_ = false;          // the host has not seen E_d
+  mutable bool stale_ = false;   // E_d is of another density, or of another light
+  std::optional<Traffic> next_;  // of next(), if there was one
   mutable Frame frame_;
   std::vector<scene::StageTime> times_;
 };
 
 PreparedPaperGpu::PreparedPaperGpu(std::shared_ptr<const Scene> scene,
-                                   const airlight::legendre_fluids::PaperOptions& options, std::string settings)
-    : scene_(std::move(scene)),
-      options_(options),
-      settings_(std::move(settings)),
-      context_(Context::get()),
-      moving_(airlight::legendre_fluids::moving_axes(*scene_)),
-      frame_(context_) {
+                                   const airlight::legendre_fluids::PaperOptions& options, scene::Settings given)
+    : options_(options), given_(std::move(given)), context_(Context::get()), frame_(context_) {
+  times_ = prepare(std::move(scene));
+}
+
+// For a first frame, or one that keeps what the frame before has in common with it.
+std::vector<scene::StageTime> PreparedPaperGpu::prepare(std::shared_ptr<const Scene> scene) {
+  const Use use(context_);
+  const Traffic traffic = context_.traffic();
+  frame_.timer.restart();
+  const std::shared_ptr<const Scene> before = std::exchange(scene_, std::move(scene));
+  const std::vector<scene::DirectionalLight> lights_before = std::exchange(lights_, {});
+  const Rgb sigma_before = media_.medium ? media_.medium->sigma_t : Rgb(Rgb::Zero());
+  moving_ = airlight::legendre_fluids::moving_axes(*scene_);
   for (const scene::Light& light : scene_->lights)
     if (const auto* sun = std::get_if<scene::DirectionalLight>(&light);
         sun && (scatter(scene_->media, light) || (ends_rays(*scene_) && scene::shines(light))))
       lights_.push_back(*sun);
-  media_ = airlight::legendre_fluids::paper_medium(*scene_);
+  const auto kept = before ? airlight::legendre_fluids::kept_medium(media_, *before, *scene_) : std::nullopt;
+  media_ = kept ? *kept : airlight::legendre_fluids::paper_medium(*scene_);
   field_ = media_.density;
   // Where no light shines, one without colour: columns are part of the systems' picture.
   if (lights_.empty() && ends_rays(*scene_)) lights_.push_back({-scene_->camera.forward, Rgb::Zero()});
-  if (!field_ || lights_.empty()) return;
-  const Use use(context_);
-  StageTimer timer(context_);
-  timer.begin("upload");
-  systems_ = std::make_unique<PaperSystems>(context_, media_, lights_, options_, moving_);
-  Definitions definitions = systems_->definitions();
-  if (ends_rays(*scene_)) {
-    if (wavelet_fog::something_ends_rays(*scene_)) first_hits_ = std::make_unique<FirstHits>(context_, *scene_);
-    if (!scene_->backdrops.empty()) backdrops_ = std::make_unique<Backdrops>(context_, *scene_);
-    surfaces_ = std::make_unique<wavelet_fog::SurfaceLight>(context_, *scene_, first_hits_.get());
-    if (wavelet_fog::lamps_light_surfaces(*scene_)) dim_ = &program(context_, "paper_dim", tile, tile, definitions);
+  if (!field_ || lights_.empty()) {
+    systems_.reset();
+    surfaces_.reset();
+    return {};
   }
+  if (!kept)
+    negative_density_ =
+        field_->negative() ? airlight::legendre_fluids::negative_share(field_->shape(), field_->coefficients()) : 0;
+  const bool had_surfaces = bool(surfaces_);
+  find_surfaces(before.get());
+  const bool same_density = kept && !std::exchange(flows_, false);
+  const bool goes_on = systems_ && systems_->become(same_density, moving_);
+  if (!goes_on) systems_ = std::make_unique<PaperSystems>(context_, media_, lights_, options_, moving_);
+  const bool dims = surfaces_ && wavelet_fog::lamps_light_surfaces(*scene_);
+  if (!goes_on || had_surfaces != bool(surfaces_) || dims != bool(dim_)) find_programs();
+  if (!goes_on) {
+    frame_.timer.stage("upload");
+    systems_->begin();
+    negative_direct_ = 0;
+    for (const Eigen::VectorXd& e : systems_->direct())
+      negative_direct_ = std::max(negative_direct_, airlight::legendre_fluids::negative_share(systems_->shape(), e));
+    stale_ = unseen_ = false;
+    frame_.timer.stage("direct systems");
+  } else {
+    const auto same_way = [](const scene::DirectionalLight& a, const scene::DirectionalLight& b) {
+      return a.to_light == b.to_light;
+    };
+    stale_ = stale_ || !same_density || (media_.medium->sigma_t != sigma_before).any() ||
+             !std::equal(lights_.begin(), lights_.end(), lights_before.begin(), lights_before.end(), same_way);
+    unseen_ = unseen_ || stale_;
+    if ((context_.traffic() - traffic).bytes_up > 0) frame_.timer.stage("upload");
+  }
+  direct_made_ = !goes_on || stale_ ? int(lights_.size()) : 0;
+  return (context_.traffic() - traffic).bytes_up > 0 ? frame_.timer.times() : std::vector<scene::StageTime>();
+}
+
+void PreparedPaperGpu::find_surfaces(const Scene* before) {
+  if (!surfaces_ || !scene::same_surfaces(*before, *scene_)) {
+    surfaces_.reset();
+    first_hits_.reset();
+  }
+  backdrops_.reset();
+  if (!ends_rays(*scene_)) return surfaces_.reset();
+  if (!surfaces_ && wavelet_fog::something_ends_rays(*scene_))
+    first_hits_ = std::make_unique<FirstHits>(context_, *scene_);
+  if (!scene_->backdrops.empty()) backdrops_ = std::make_unique<Backdrops>(context_, *scene_);
+  if (!surfaces_ || !surfaces_->become(*scene_))
+    surfaces_ = std::make_unique<wavelet_fog::SurfaceLight>(context_, *scene_, first_hits_.get());
+}
+
+void PreparedPaperGpu::find_programs() {
+  Definitions definitions = systems_->definitions();
+  dim_ = surfaces_ && wavelet_fog::lamps_light_surfaces(*scene_)
+             ? &program(context_, "paper_dim", tile, tile, definitions)
+             : nullptr;
   define_columns(field_->shape(), bool(surfaces_), definitions);
   image_ = &program(context_, "paper_image", tile, tile, definitions);
-  timer.begin("direct systems");
-  systems_->begin();
-  times_ = timer.times();
-  for (const Eigen::VectorXd& e : systems_->direct())
-    negative_direct_ = std::max(negative_direct_, airlight::legendre_fluids::negative_share(systems_->shape(), e));
+}
+
+std::optional<std::vector<scene::StageTime>> PreparedPaperGpu::next(std::shared_ptr<const Scene> scene,
+                                                                    const Execution&) {
+  // Of a scene without media variant `ray` draws what can be seen.
+  if (!LegendreLight().supports(*scene, given_).empty() ||
+      (ends_rays(*scene) && !airlight::legendre_fluids::paper_medium(*scene).density))
+    return std::nullopt;
+  const Traffic before = context_.traffic();
+  std::vector<scene::StageTime> times = prepare(std::move(scene));
+  next_ = context_.traffic() - before;
+  return times;
 }
 
 std::vector<scene::Stage> PreparedPaperGpu::stages() const {
@@ -143,10 +209,12 @@ std::vector<scene::Stage> PreparedPaperGpu::stages() const {
                                             : "no surface is lit, no background"}};
 }
 
-bool PreparedPaperGpu::take(const DensityOnDevice& density) {
+bool PreparedPaperGpu::take(std::size_t medium, const DensityOnDevice& density) {
   const Use use(context_);
-  if (!systems_ || !systems_->take(density)) return false;
-  flows_ = stale_ = true;
+  const bool several = std::count_if(scene_->media.begin(), scene_->media.end(), scene::extinguishes) > 1;
+  if (medium > 0 || several || !systems_ || !systems_->take(density)) return false;
+  flows_ = stale_ = unseen_ = true;
+  direct_made_ = int(lights_.size());
   return true;
 }
 
@@ -225,13 +293,13 @@ void PreparedPaperGpu::draw(const View& view, const Ends& ends) const {
 
 std::map<std::string, double> PreparedPaperGpu::counters() const {
   std::map<std::string, double> all{{"unknowns", double(scene::tensor_size(systems_->shape()))},
-                                    {"iterations", double(systems_->iterations())}};
+                                    {"iterations", double(systems_->iterations())},
+                                    {"direct_systems_made", double(direct_made_)}};
   const auto counts = frame_.download.values<unsigned>("counts");
   if (counts.empty()) return all;
   all["negative_share"] = counts[0] > 0 ? double(counts[1]) / counts[0] : 0;
-  if (flows_) return all;
-  all["negative_direct_share"] = negative_direct_;
-  all["negative_density_share"] = airlight::legendre_fluids::negative_share(field_->shape(), field_->coefficients());
+  if (!unseen_) all["negative_direct_share"] = negative_direct_;
+  if (!flows_) all["negative_density_share"] = negative_density_;
   return all;
 }
 
@@ -265,8 +333,11 @@ scene::Rendering PreparedPaperGpu::render(const View& view, const Execution& exe
     stale_ = false;
     result.counters["rays"] = double(pixels);
     if (systems_) result.counters.merge(counters());
-    result.film.metadata = {
-        {"method", "legendre_fluids_gpu"}, {"settings", settings_}, {"scene", scene_->name}, {"hash", scene_->hash}};
+    if (next_) result.counters.merge(next_->counters("next_"));
+    result.film.metadata = {{"method", "legendre_fluids_gpu"},
+                            {"settings", given_.canonical()},
+                            {"scene", scene_->name},
+                            {"hash", scene_->hash}};
     return result;
   }
 }
@@ -303,9 +374,9 @@ std::vector<std::string> unsupported_paper(const Scene& scene, const airlight::l
 
 std::unique_ptr<scene::Prepared> prepare_paper(std::shared_ptr<const Scene> scene,
                                                const airlight::legendre_fluids::PaperOptions& options,
-                                               const std::string& settings) {
+                                               const scene::Settings& given) {
   if (ends_rays(*scene) && !airlight::legendre_fluids::paper_medium(*scene).density) return nullptr;
-  return std::make_unique<PreparedPaperGpu>(std::move(scene), options, settings);
+  return std::make_unique<PreparedPaperGpu>(std::move(scene), options, given);
 }
 
 }  // namespace airlight::gpu::legendre_fluids

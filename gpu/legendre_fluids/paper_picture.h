@@ -12,7 +12,8 @@ namespace airlight::gpu::legendre_fluids {
 class TakesDensity {
  public:
   virtual ~TakesDensity() = default;
-  virtual bool take(const DensityOnDevice&) = 0;
+  // `medium`: among those that extinguish.
+  virtual bool take(std::size_t medium, const DensityOnDevice&) = 0;
 };
 
 // Why shaders cannot do what the CPU's variant can; empty if they can.
@@ -22,6 +23,6 @@ std::vector<std::string> unsupported_paper(const scene::Scene&, const airlight::
 // not converge.
 std::unique_ptr<scene::Prepared> prepare_paper(std::shared_ptr<const scene::Scene>,
                                                const airlight::legendre_fluids::PaperOptions&,
-                                               const std::string& settings);
+                                               const scene::Settings& given);
 
 }  // namespace airlight::gpu::legendre_fluids

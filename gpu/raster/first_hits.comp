@@ -43,22 +43,31 @@ void keep_nearer(inout First best, double t, int primitive) {
 double edge(dvec3 p, dvec3 q, out int side) {
   precise double left = p.x * q.y, right = p.y * q.x;
   precise double value = left - right;
-  side = value != 0 ? (value > 0 ? 1 : -1) : p.y != q.y ? (p.y > q.y ? 1 : -1) : int(q.x > p.x) - int(q.x < p.x);
+  side = value > 0 ? 1 : -1;
+  if (value == 0) {
+    side = p.y != q.y ? (p.y > q.y ? 1 : -1) : int(q.x > p.x) - int(q.x < p.x);
+  }
   return value;
 }
-dvec3 sheared(ivec3 axis, dvec3 shear, dvec3 v) {
-  precise dvec3 result = dvec3(v[axis.x], v[axis.y], 0) - dvec3(shear.xy, -shear.z) * v[axis.z];
+// A vertex from the ray's origin, which has its coordinates in the order of `axis` already.
+dvec3 sheared(ivec3 axis, dvec3 shear, dvec3 origin, int vertex) {
+  ivec3 at = 3 * vertex + axis;
+  dvec3 v = dvec3(vertex_coordinate[at.x], vertex_coordinate[at.y], vertex_coordinate[at.z]) - origin;
+  precise dvec3 result = dvec3(v.xy - shear.xy * v.z, shear.z * v.z);
   return result;
 }
 // scene/geometry/ray_primitive.cpp; 0: it is not met.
 double meet_triangle(int triangle, ivec3 axis, dvec3 shear, dvec3 origin) {
   ivec4 corners = triangles[triangle];
-  dvec3 p = sheared(axis, shear, mesh_vertex(corners.x) - origin), q = sheared(axis, shear, mesh_vertex(corners.y) - origin),
-        r = sheared(axis, shear, mesh_vertex(corners.z) - origin);
+  dvec3 p = sheared(axis, shear, origin, corners.x), q = sheared(axis, shear, origin, corners.y),
+        r = sheared(axis, shear, origin, corners.z);
   int side_u, side_v, side_w;
   double u = edge(q, r, side_u), v = edge(r, p, side_v), w = edge(p, q, side_w), whole = u + v + w;
-  if (side_u == 0 || side_u != side_v || side_u != side_w || whole == 0) return 0;
-  return p.z + v / whole * (q.z - p.z) + w / whole * (r.z - p.z);
+  double t = 0;
+  if (side_u != 0 && side_u == side_v && side_u == side_w && whole != 0) {
+    t = p.z + (v * (q.z - p.z) + w * (r.z - p.z)) / whole;
+  }
+  return t;
 }
 
 void main() {
@@ -83,22 +92,23 @@ void main() {
       keep_nearer(best, meet_solid(solids[i], origin, direction, normal), triangle_count + i);
 
   TreeRay ray = tree_ray_of(vec3(origin - tree_middle), vec3(direction));
+  dvec3 turned_origin = dvec3(origin[ray.axis.x], origin[ray.axis.y], origin[ray.axis.z]);
   dvec3 shear = dvec3(direction[ray.axis.x], direction[ray.axis.y], 1) / direction[ray.axis.z];
 #if RESUMES
-  for (int leaves = 0; leaves < leaves_at_once && node < tree_nodes; ++leaves) {
+  for (int leaves = 0; leaves < leaves_at_once && node < tree_end; ++leaves) {
 #else
-  while (node < tree_nodes) {
+  while (node < tree_end) {
 #endif
-    int leaf = next_leaf(ray, node, tree_nodes, best.t * (1 + 1e-6));
+    int leaf = next_leaf(ray, node, tree_end, best.t * (1 + 1e-6));
     for (int bits = may_be_met(ray, leaf); bits != 0; bits &= bits - 1) {
       int triangle = triangle_at((leaf >> 3) + findLSB(bits));
-      keep_nearer(best, meet_triangle(triangle, ray.axis, shear, origin), triangle);
+      keep_nearer(best, meet_triangle(triangle, ray.axis, shear, turned_origin), triangle);
     }
   }
 #if RESUMES
   unfinished[kept] = node;
   unfinished[kept + 1] = best.primitive;
-  if (node < tree_nodes && dispatch + 1 < dispatches)
+  if (node < tree_end && dispatch + 1 < dispatches)
     for (int a = 0; a < 3; ++a) unfinished[3 * (dispatch + 1) + a] = int(gl_NumWorkGroups[a]);
 #endif
   distances[first_ray + place] = best.t;

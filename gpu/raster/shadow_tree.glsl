@@ -22,7 +22,7 @@ bool primitive_blocks(int primitive, bool own, dvec3 origin, dvec3 direction, do
   dvec3 p = cross(direction, ac), from = origin - a, q = cross(from, ab);
   double det = dot(ab, p);
   if (det == 0) return false;
-  double u = dot(from, p) / det, v = dot(direction, q) / det, t = dot(ac, q) / det;
+  double inverse = 1 / det, u = dot(from, p) * inverse, v = dot(direction, q) * inverse, t = dot(ac, q) * inverse;
   return u >= 0 && v >= 0 && u + v <= 1 && t > 0 && t < end;
 }
 
@@ -31,8 +31,8 @@ bool tree_blocks(int own, dvec3 point, dvec3 to_light, double end) {
     if (triangle_count + i != own && primitive_blocks(triangle_count + i, false, point, to_light, end)) return true;
   TreeRay ray = tree_ray_of(vec3(point - tree_middle), vec3(to_light));
   float until = float(end) * (1 + 1e-6);
-  for (int node = 0; node < tree_nodes;) {
-    int leaf = next_leaf(ray, node, tree_nodes, until);
+  for (int node = 0; node < tree_end;) {
+    int leaf = next_leaf(ray, node, tree_end, until);
     for (int bits = may_be_met(ray, leaf); bits != 0; bits &= bits - 1) {
       int triangle = triangle_at((leaf >> 3) + findLSB(bits));
       if (triangle != own && primitive_blocks(triangle, false, point, to_light, end)) return true;

@@ -8,7 +8,7 @@ namespace airlight::gpu {
 
 class ShadowTree {
  public:
-  // About 90 bytes a triangle. Throws Unavailable above the device's limits.
+  // About 95 bytes a triangle. Throws Unavailable above the device's limits.
   ShadowTree(Context&, const scene::Scene&);
 
   // Binds 14, sets its uniforms.
@@ -26,8 +26,6 @@ class ShadowTree {
   int nodes_, solids_;
   Point3 middle_;
   double reach_;
-  Vec3 low_;
-  float cell_;
   Buffer tree_;
 };
 

@@ -94,8 +94,9 @@ void MediaOnDevice::bind(LinkedProgram& program) const {
 
 std::vector<std::string> unknown_media(const std::vector<scene::Medium>& media) {
   std::vector<std::string> reasons;
-  if (media.size() > most_layers)
-    reasons.push_back(fmt::format("{} media: the shader has room for {}", media.size(), most_layers));
+  const auto visible = std::count_if(media.begin(), media.end(), scene::extinguishes);
+  if (visible > std::ptrdiff_t(most_layers))
+    reasons.push_back(fmt::format("{} media with extinction: a uniform block holds {}", visible, most_layers));
   return reasons;
 }
 

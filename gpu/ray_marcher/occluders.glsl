@@ -46,8 +46,8 @@ bool occluded(vec3 origin, vec3 direction, float t_end) {
     if (solid_between(blockers[i], origin, direction, t_end)) return true;
   TreeRay ray = tree_ray_of(origin + middle_in_tree, direction);
   float along = direction[ray.axis.z];
-  for (int node = 0; node < tree_nodes;) {
-    int leaf = next_leaf(ray, node, tree_nodes, t_end);
+  for (int node = 0; node < tree_end;) {
+    int leaf = next_leaf(ray, node, tree_end, t_end);
     for (int k = leaf >> 3; k < (leaf >> 3) + (leaf & 7); ++k)
       if (triangle_between(ray, k, along, t_end)) return true;
   }

@@ -29,7 +29,9 @@ double iterations_at_once(const airlight::ray_marcher::Plan& plan) {
     // back up.
     if (!exact && layer.most_varied * layer.thickest * across / steps > deepest_shadow_step(o))
       sum += 4 * 20 / deepest_shadow_step(o) * (layer.grid ? 1 : 3 * density_iterations(layer));
-    if (!layer.gaussians)
+    if (exact && layer.grid)
+      sum += layer.grid->size[0] + layer.grid->size[1] + layer.grid->size[2];
+    else if (!layer.gaussians)
       sum += steps * density_iterations(layer);
     else if (layer.gaussians->any_negative)
       sum += steps * double(layer.gaussians->count);

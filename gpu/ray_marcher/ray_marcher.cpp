@@ -156,7 +156,6 @@ std::vector<std::string> RayMarcher::supports(const Scene& scene, const scene::S
   std::vector<std::string> reasons = airlight::ray_marcher::RayMarcher().supports(scene, settings);
   for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
   const airlight::ray_marcher::Options options = airlight::ray_marcher::read_options(settings, 1);
-  for (const std::string& reason : unknown_media(scene.media)) reasons.push_back(reason);
   if (!options.simd) reasons.push_back("kernel = scalar is for the CPU: shaders compute in single precision");
   std::string marched;
   for (const scene::Medium& medium : scene.media)
@@ -166,10 +165,8 @@ std::vector<std::string> RayMarcher::supports(const Scene& scene, const scene::S
           for (const scene::Gaussian& g : sum.gaussians)
             if (g.amplitude < 0) marched = "Gaussians with negative amplitudes";
         },
-        [&](const scene::GridPointer&) { marched = "voxel grids"; },
-        [&](const scene::FogmapPointer&) { marched = "fogmaps"; },
-        [&](const scene::LegendrePointer&) { marched = "Legendre boxes"; },
-        [&](const scene::FittedPointer&) { marched = "voxel grids"; });
+        [](const scene::GridPointer&) {}, [&](const scene::FogmapPointer&) { marched = "fogmaps"; },
+        [&](const scene::LegendrePointer&) { marched = "Legendre boxes"; }, [](const scene::FittedPointer&) {});
   if (options.shadow == airlight::ray_marcher::Shadow::exact && !marched.empty())
     reasons.push_back("shadow = exact: shaders march the depths of " + marched);
   return reasons;

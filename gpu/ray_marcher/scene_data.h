@@ -13,8 +13,6 @@ namespace airlight::gpu::ray_marcher {
 using Float3 = std::array<float, 3>;
 using Float4 = std::array<float, 4>;
 
-inline constexpr std::size_t most_layers = 15;  // bits of spacing.glsl
-
 struct LayerData {
   Float3 sigma_t;
   float constant;
@@ -36,6 +34,8 @@ struct LayerData {
   float most_varied, thickest;
 };
 static_assert(sizeof(LayerData) == 224);
+// Layers fill a uniform block. OpenGL promises 16 KiB for one. Marches with a list of parts take the CPU's 32.
+inline constexpr std::size_t most_layers = 16384 / sizeof(LayerData);
 
 struct GaussianData {
   Float3 center;

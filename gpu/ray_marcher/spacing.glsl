@@ -64,25 +64,47 @@ const int most_parts = 4 * LAYERS + 3;
 #endif
 LIST(float, part_lo, most_parts);
 LIST(float, part_hi, most_parts);
-LIST(uint, part_flags, most_parts);   // in_varied, in_constant << 15, grows << 30, zone << 31
+LIST(uint, part_flags, most_parts);   // up to 15 layers in_varied, in_constant << 15; grows << 30, zone << 31
+#if LAYERS > 15
+LIST(uint, part_varied, most_parts);
+LIST(uint, part_constant, most_parts);
+#endif
 LIST(float, part_share, most_parts);  // weight; in the zone u_lo
 LIST(float, part_u_hi, most_parts);
 int part_count;
 float growth;       // [1/m]
 float zone_weight;  // of all parts there
 
+#if LAYERS > 15
+uint varied_at(int i, uint flags) { return part_varied[MINE(i)]; }
+uint constant_at(int i, uint flags) { return part_constant[MINE(i)]; }
+#else
+uint varied_at(int i, uint flags) { return flags & 0x7fffu; }
+uint constant_at(int i, uint flags) { return flags >> 15 & 0x7fffu; }
+#endif
 Part part_at(int i) {
   uint flags = part_flags[MINE(i)];
   float share = part_share[MINE(i)];
   bool zone = (flags >> 31) != 0u;
-  return Part(part_lo[MINE(i)], part_hi[MINE(i)], flags >> 15 & 0x7fffu, flags & 0x7fffu, (flags >> 30 & 1u) != 0u, zone, share,
+  return Part(part_lo[MINE(i)], part_hi[MINE(i)], constant_at(i, flags), varied_at(i, flags), (flags >> 30 & 1u) != 0u, zone, share,
               part_u_hi[MINE(i)], zone ? zone_weight : share);
 }
-void put_part(int i, float lo, float hi, uint flags, float share) {
-  part_lo[MINE(i)] = lo, part_hi[MINE(i)] = hi, part_flags[MINE(i)] = flags, part_share[MINE(i)] = share;
+void put_part(int i, float lo, float hi, uint in_varied, uint in_constant) {
+  part_lo[MINE(i)] = lo, part_hi[MINE(i)] = hi, part_share[MINE(i)] = 1;
+#if LAYERS > 15
+  part_flags[MINE(i)] = 0u, part_varied[MINE(i)] = in_varied, part_constant[MINE(i)] = in_constant;
+#else
+  part_flags[MINE(i)] = in_varied | in_constant << 15;
+#endif
 }
-uint constant_at(int i) { return part_flags[MINE(i)] >> 15 & 0x7fffu; }
-bool varies_at(int i) { return (part_flags[MINE(i)] & 0x7fffu) != 0u; }
+void move_part(int from, int to) {
+  part_lo[MINE(to)] = part_lo[MINE(from)], part_hi[MINE(to)] = part_hi[MINE(from)];
+  part_flags[MINE(to)] = part_flags[MINE(from)], part_share[MINE(to)] = part_share[MINE(from)];
+#if LAYERS > 15
+  part_varied[MINE(to)] = part_varied[MINE(from)], part_constant[MINE(to)] = part_constant[MINE(from)];
+#endif
+}
+bool varies_at(int i) { return varied_at(i, part_flags[MINE(i)]) != 0u; }
 
 float deepest;     // reference/ray_marcher/spacing.h
 bvec3 never_ends;  // per channel: the medium behind the last step goes on for ever
@@ -119,12 +141,12 @@ void cut_ray(vec3 origin, vec3 direction, float t_end) {
   for (int i = 0; i + 1 < cut_count; ++i) {
     float lo = part_lo[MINE(i)], hi = part_lo[MINE(i + 1)];
     if (!(lo < hi)) continue;
-    uint flags = 0u;
-    for (int k = 0; k < layer_count; ++k)
-      for (int varied = 0; varied < 2; ++varied)
-        if (part_u_hi[MINE(4 * k + 2 * varied)] <= lo && part_u_hi[MINE(4 * k + 2 * varied + 1)] >= hi)
-          flags |= 1u << (varied == 1 ? k : k + 15);
-    if (flags != 0u) put_part(part_count++, lo, hi, flags, 1);
+    uint in_varied = 0u, in_constant = 0u;
+    for (int k = 0; k < layer_count; ++k) {
+      if (part_u_hi[MINE(4 * k)] <= lo && part_u_hi[MINE(4 * k + 1)] >= hi) in_constant |= 1u << k;
+      if (part_u_hi[MINE(4 * k + 2)] <= lo && part_u_hi[MINE(4 * k + 3)] >= hi) in_varied |= 1u << k;
+    }
+    if ((in_varied | in_constant) != 0u) put_part(part_count++, lo, hi, in_varied, in_constant);
   }
 }
 
@@ -141,8 +163,7 @@ void split_at(float t) {
   int i = 0;
   while (i < part_count && !(part_lo[MINE(i)] < t && t < part_hi[MINE(i)])) ++i;
   if (i == part_count) return;
-  for (int j = part_count; j > i; --j)
-    put_part(j, part_lo[MINE(j - 1)], part_hi[MINE(j - 1)], part_flags[MINE(j - 1)], part_share[MINE(j - 1)]);
+  for (int j = part_count; j > i; --j) move_part(j - 1, j);
   ++part_count;
   if ((part_flags[MINE(i)] >> 30 & 1u) != 0u) part_share[MINE(i + 1)] *= exp(-0.5 * growth * (t - part_lo[MINE(i)]));
   part_hi[MINE(i)] = t;
@@ -187,7 +208,7 @@ bool lay_parts(vec3 origin, vec3 direction, float t_end, bool has_light, Approac
   if (part_count == 0) return false;
   int last = part_count - 1;
   if (part_hi[MINE(last)] >= far_away) {
-    uint inside = constant_at(last);
+    uint inside = constant_at(last, part_flags[MINE(last)]);
     float from = part_lo[MINE(last)];
     vec3 rates = vec3(0);
     for (int k = 0; k < layer_count; ++k)

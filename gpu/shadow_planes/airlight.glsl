@@ -143,12 +143,18 @@ vec3 smooth_airlight(Ray ray, double from, double to) {
   return albedo_of(air_medium) * result;
 #else
   dvec3 middle = ray.origin + (to < 1e30LF ? 0.5LF * (from + to) : from + 1) * ray.direction;
-  int here = 0;
+#if MOST_MEDIA > 32
+#define HERE(m) here[(m) >> 5]
+  uvec4 here = uvec4(0);  // a bit for each medium
+#else
+#define HERE(m) here
+  uint here = 0u;
+#endif
   vec3 extinction = vec3(0), before = depth_along(ray.origin, ray.direction, from);
   float width_ = 1;
   for (int m = 0; m < media_count; ++m)
     if (region_contains(m, middle)) {
-      here |= 1 << m;
+      HERE(m) |= 1u << (m & 31);
       extinction += extinction_of(m);
       width_ = min(width_, media[m].phase.width);
     }
@@ -175,7 +181,7 @@ vec3 smooth_airlight(Ray ray, double from, double to) {
         lost += media[m].extinction[c] * way_to_light(m, start, further * direction, d, r);
       vec3 scattered = vec3(0);
       for (int m = 0; m < media_count; ++m)
-        if ((here & 1 << m) != 0)
+        if ((HERE(m) >> (m & 31) & 1u) != 0u)
           scattered += albedo_of(m) * media[m].extinction[c] * phase_of_halves(media[m].phase, node.v, node.w);
       float weight = node.weight * exp(-lost);
 #if SPOT

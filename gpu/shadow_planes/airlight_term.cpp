@@ -48,7 +48,7 @@ std::vector<MediumData> media_data(const scene::Scene& scene, bool printed) {
     }
     data.push_back(d);
   }
-  data.resize(most_media);  // as many as the block has
+  data.resize(room_for_media(data.size()));  // as many as the block has
   return data;
 }
 
@@ -103,6 +103,7 @@ std::map<std::string, std::string> AirlightTermsOnDevice::definitions(int light,
   const auto flag = [](bool on) { return std::string(on ? "1" : "0"); };
   return {{"BOUNDED", flag(term >= 0 && airlight_terms_[term].bounded)},
           {"GREY", flag(grey_)},
+          {"MOST_MEDIA", std::to_string(room_for_media(scene_->media.size()))},
           {"PAPER_MEDIUM", flag(term >= 0 && airlight_terms_[term].paper)},
           {"POLYNOMIAL", flag(options_.evaluator == Options::Evaluator::polynomial)},
           {"POWER", std::to_string(options_.stretch)},

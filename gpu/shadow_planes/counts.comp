@@ -92,15 +92,15 @@ void main() {
   view_ray(dvec2(pixel) + 0.5LF, origin, direction);
   dvec3 y = in_general_position(origin) - light;
   double end = length(y);
-  states[pixel.y * view_width + pixel.x].m_origin = end > 0 ? crossed_triangles(y, end, 0, tree_nodes) + crossed_solids(y) : 0;
+  states[pixel.y * view_width + pixel.x].m_origin = end > 0 ? crossed_triangles(y, end, 0, tree_end) + crossed_solids(y) : 0;
 #else
-  int invocation = int(gl_LocalInvocationIndex), share = (tree_nodes + LOCAL_SIZE_X - 1) / LOCAL_SIZE_X;
+  int invocation = int(gl_LocalInvocationIndex), share = NODE_ENTRIES * ((tree_end / NODE_ENTRIES + LOCAL_SIZE_X - 1) / LOCAL_SIZE_X);
   dvec3 y = in_general_position(view_position) - light;
   double end = length(y);
   if (invocation == 0) sum_of_group = end > 0 ? crossed_solids(y) : 0;
   barrier();
   int first = invocation * share;
-  if (end > 0) atomicAdd(sum_of_group, crossed_triangles(y, end, first, min(first + share, tree_nodes)));
+  if (end > 0) atomicAdd(sum_of_group, crossed_triangles(y, end, first, min(first + share, tree_end)));
   barrier();
   if (invocation == 0) count_at_camera = sum_of_group;
 #endif

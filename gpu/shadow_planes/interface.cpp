@@ -14,7 +14,6 @@ std::map<std::string, std::string> shared_definitions() {
   std::map<std::string, std::string> definitions = {{"EDGES_PER_GROUP", std::to_string(edges_per_group)},
                                                     {"SECTORS_PER_GROUP", std::to_string(sectors_per_group)},
                                                     {"MOST_HITS", std::to_string(most_hits)},
-                                                    {"MOST_MEDIA", std::to_string(most_media)},
                                                     {"MOST_NODES", std::to_string(most_nodes)},
                                                     {"FAN_LEVELS", std::to_string(EdgeFan::levels)},
                                                     {"FAN_SECTORS", std::to_string(EdgeFan::total_sectors())},

@@ -1,5 +1,6 @@
 // Constants and layouts shared by host and shaders of this method: shaders get the numbers as definitions.
 #pragma once
+#include <algorithm>
 #include <map>
 #include <string>
 
@@ -49,7 +50,6 @@ enum Binding {
 enum class RegionKind { unbounded, box, sphere, slab };
 constexpr int edges_per_group = 64;  // of indirect dispatches
 constexpr int sectors_per_group = 1024;
-constexpr int most_media = 32;    // bits of a word
 constexpr int most_nodes = 1024;  // of the rule: what a uniform block holds on every device
 constexpr int most_hits = 16;     // crossings that a pixel gathers at a time: 4 bits number them (crossings.glsl)
 
@@ -75,6 +75,12 @@ struct alignas(32) MediumData {
   float g, scale, width;
   int region;
 };
+
+// Media fill a uniform block. OpenGL promises 16 KiB for one.
+constexpr int most_media = 16384 / sizeof(MediumData);
+static_assert(most_media <= 128, "airlight.glsl has 128 bits");
+// Room for a number of media, in steps, so that most scenes share programs.
+constexpr int room_for_media(std::size_t media) { return std::max(32, (int(media) + 31) / 32 * 32); }
 
 // Layout of light_state.glsl.
 struct LightStateData {

@@ -45,7 +45,8 @@ PlaneShading::PlaneShading(Context& context, const std::shared_ptr<const scene::
       materials_(context, "materials", MaterialTables(*scene).materials),
       tables_(context, "reflectance tables", MaterialTables(*scene).values),
       left_out_(program(context, "left_out", edges_per_group)),
-      composition_(program(context, "composition", 8, 8)) {}
+      composition_(program(context, "composition", 8, 8,
+                           {{"MOST_MEDIA", std::to_string(room_for_media(scene->media.size()))}})) {}
 
 // Marks edges whose planes cannot cut a medium's box.
 void PlaneShading::leave_out(const LightEdges& edges, const Box& box, const Point3& light) const {

@@ -30,7 +30,7 @@ std::vector<std::string> unsupported_on_device(const Scene& scene, const Options
   if (options.evaluator == Options::Evaluator::polynomial && options.degree > most_degree)
     reasons.push_back(fmt::format("degree = {}: single precision takes {} at most", options.degree, most_degree));
   if (scene.media.size() > most_media)
-    reasons.push_back(fmt::format("{} media: the shader has room for {}", scene.media.size(), most_media));
+    reasons.push_back(fmt::format("{} media: a uniform block holds {}", scene.media.size(), most_media));
   return reasons;
 }
 

@@ -15,7 +15,7 @@ float integral_of_level(int level, Line line, dvec2 t) {
 }
 dvec2 both(dvec2 a, dvec2 b) { return dvec2(max(a.x, b.x), min(a.y, b.y)); }
 
-#if VARIANT == VARIANT_TELE || VARIANT == VARIANT_PAPER
+#if VARIANT == VARIANT_TELE || VARIANT == VARIANT_PAPER || VARIANT == VARIANT_PRE
 // Detail m counts that far (eq. 12): |OP| mu^m.
 double reach_of(int m, double length_) {
   for (int i = 0; i < m; ++i) length_ *= fog.mu;
@@ -38,14 +38,19 @@ float column(dvec3 origin, dvec3 direction, double length_) {
   dvec2 of_map = clip_to_support(grids[0], line, inside);
   allowed_error = fog.allowed / float(max(of_map.y - of_map.x, 0.0LF));
   return integral_of_level(0, line, both(of_map, done));
-#elif VARIANT == VARIANT_TELE || VARIANT == VARIANT_PAPER
+#elif VARIANT == VARIANT_TELE || VARIANT == VARIANT_PAPER || VARIANT == VARIANT_PRE
   // |OP| ends where the ray leaves the ground's box of the coarsest grid.
   dvec2 box = clip_to_support(grids[fog.levels], coarser(line, fog.levels), dvec2(0, length_));
   double reach = box.y > box.x ? box.y : 0.0LF, from = 0;
   float sum = 0;
-#if VARIANT == VARIANT_PAPER
+#if VARIANT != VARIANT_TELE
   for (int m = 0; m <= fog.levels; ++m) {
+#if VARIANT == VARIANT_PRE  // the grid says where the wavelets lie, in half cells; their three bands follow
+    int level = fog.levels - m, grid = m == 0 ? fog.levels : fog.details + 4 * level;
+    wavelets = m == 0 ? -1 : grid + 1;
+#else
     int level = fog.levels - m, grid = m == 0 ? fog.levels : fog.details + level;
+#endif
     Line over = coarser(line, level);
     dvec2 t = clip_to_support(grids[grid], over, both(done, dvec2(0, reach_of(m, reach))));
     if (t.y > t.x) sum += integral_of(grids[grid], over, t, 1e37);

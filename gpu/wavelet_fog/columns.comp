@@ -16,7 +16,7 @@ layout(std430, binding = AT_DEPTHS) buffer Depths { vec4 depths[]; };  // w: int
 layout(std430, binding = AT_COUNTERS) buffer Counters { uint counters[]; };
 uniform int has_distances, first, counts;
 
-shared uint cells_of_group, lookups_of_group;
+shared uint cells_of_group, lookups_of_group, wavelet_cells_of_group;
 void add_to_counter(int low, uint amount) {
   if (atomicAdd(counters[low], amount) > 0xffffffffu - amount) atomicAdd(counters[low + 1], 1u);
 }
@@ -40,7 +40,7 @@ void main() {
   lit[place].reflected = part + 1 < parts ? vec4(lit[place].reflected.rgb, sum) : vec4(lit[place].reflected.rgb * exp(-depth_of(sum)), 0);
 #else
   uint lookups = 0u;
-  if (gl_LocalInvocationIndex == 0u) cells_of_group = lookups_of_group = 0u;
+  if (gl_LocalInvocationIndex == 0u) cells_of_group = lookups_of_group = wavelet_cells_of_group = 0u;
   if (inside) {
     double end = has_distances != 0 ? double(distances[place]) : 1e37LF;
 #if VARIANT == VARIANT_POLAR
@@ -56,11 +56,14 @@ void main() {
   barrier();
   atomicAdd(cells_of_group, cells_read);
   atomicAdd(lookups_of_group, lookups);
+#if VARIANT == VARIANT_PRE
+  atomicAdd(wavelet_cells_of_group, wavelet_cells);
+#endif
   if (inside && loops_cut()) counters[4] = 1u;
   barrier();
   if (gl_LocalInvocationIndex != 0u) return;
-  add_to_counter(0, cells_of_group);
-  add_to_counter(2, cells_of_group * uint((DEGREE + 1) * (DEGREE + 1)));
+  add_to_counter(0, cells_of_group + wavelet_cells_of_group);
+  add_to_counter(2, cells_of_group * uint((DEGREE + 1) * (DEGREE + 1)) + wavelet_cells_of_group * uint(WAVELET_COEFFICIENTS));
   add_to_counter(7, lookups_of_group);
 #endif
 }

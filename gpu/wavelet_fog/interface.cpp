@@ -27,6 +27,7 @@ Definitions shared_definitions() {
   number("PHASE_MURKY", scene::PhaseFunction(scene::Murky()).index());
   using Variant = airlight::wavelet_fog::Options::Variant;
   number("VARIANT_PAPER", Variant::paper);
+  number("VARIANT_PRE", Variant::pre);
   number("VARIANT_TELE", Variant::tele);
   number("VARIANT_BOUND", Variant::bound);
   number("VARIANT_POLAR", Variant::polar);

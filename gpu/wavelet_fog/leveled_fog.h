@@ -50,6 +50,8 @@ class FogOnDevice {
 
  private:
   void add_grids();
+  void add_wavelets(Definitions&) const;
+  void add_bands(const std::vector<int>& grids);
   void add_blocks(bool errors);
   void add_errors(const std::vector<scene::IndexRange>& blocks);
   int add_levels(const std::vector<scene::IndexRange>& blocks, std::size_t first);

@@ -72,6 +72,10 @@ SurfaceLight::SurfaceLight(Context& context, const scene::Scene& scene, const Fi
       magnitude_ = std::max(magnitude_, plane->point.cwiseAbs().maxCoeff());
 }
 
+bool SurfaceLight::become(const scene::Scene& scene) {
+  return lamps_light_surfaces(scene) == reflects_ && environments_.become(scene);
+}
+
 void SurfaceLight::reflect(const scene::Light& light, const scene::View& view, const Buffer& primitives,
                            const Buffer& lit, bool first) {
   Program& p = *surfaces_;

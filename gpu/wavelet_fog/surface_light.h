@@ -25,9 +25,13 @@ class SurfaceLight {
   // has passed all surfaces.
   SurfaceLight(Context&, const scene::Scene&, const FirstHits*);
 
+  // The lights of another scene with equal surfaces. False, and nothing is done: its environments have other maps, or lamps light surfaces in
+  // one of the scenes alone.
+  bool become(const scene::Scene&);
+
   // False: no lamp lights a surface, and there is no environment: `lit` is not written.
   bool shines() const { return reflects_ || environments_.count() > 0; }
-  // Renders with the lights of `scene`, which is the original scene or one whose lamps moved. `primitives` may be null.
+  // Renders with the lights of `scene`, which is the scene of the constructor or of become(), or one whose lamps moved. `primitives` may be null.
   // `dim` multiplies the light of a lamp in `lit` by the transmittance of the media between lamp and surfaces.
   void render(const scene::Scene&, const scene::View&, const Buffer* primitives, const Buffer& lit,
               const std::function<void(const scene::Light&)>& dim);

@@ -12,6 +12,9 @@
 #if SKIPS || VARIANT == VARIANT_BOUND
 #include "wavelet_fog/empty_cells.glsl"
 #endif
+#if VARIANT == VARIANT_PRE
+#include "wavelet_fog/wavelet_cell.glsl"
+#endif
 #if VARIANT == VARIANT_BOUND  // a walk that begins anew may find the cell empty in a block that it would have taken as a whole
 const double cells_at_once = 256;
 #else
@@ -52,6 +55,9 @@ float walk(Grid g, Line line, double t, float end, Factor factor, float enough_)
 #if BLOCKS
   Grid all = grids[fog.cells];
 #endif
+#if VARIANT == VARIANT_PRE
+  ivec2 whole = ivec2(0x7fffffff);  // cell of the wavelets that was read last
+#endif
   float s = 0, sum = 0;
   while (s < end) {
     COUNT_LOOP
@@ -69,7 +75,11 @@ float walk(Grid g, Line line, double t, float end, Factor factor, float enough_)
     vec2 met = (vec2(((block + ahead) << level) - anchor) - at) * inverse + never;
     float to = max(s, min(min(met.x, met.y), end));
     if (!empty && to > s) {
+#if VARIANT == VARIANT_PRE
+      cells_read += uint(wavelets < 0);
+#else
       ++cells_read;
+#endif
       vec2 local = at + vec2(anchor - (block << level)), over = along, piece = vec2(s, to);
 #if VARIANT == VARIANT_BOUND
       Grid grid = grids[level];
@@ -77,6 +87,12 @@ float walk(Grid g, Line line, double t, float end, Factor factor, float enough_)
       local *= scale;
       over *= scale;
       Cell c = cell_at(place_of(grid, block), grid.stride);
+#elif VARIANT == VARIANT_PRE
+      if (wavelets >= 0 && (cell >> 1) != whole) {
+        whole = cell >> 1;
+        ++wavelet_cells;
+      }
+      Cell c = wavelets < 0 ? cell_at(place_of(g, cell), g.stride) : cell_of_wavelets(cell);
 #else
       Cell c = cell_at(place_of(g, cell), g.stride);
 #endif

@@ -269,8 +269,6 @@ std::vector<std::string> WaveletFog::supports(const Scene& scene, const scene::S
   std::vector<std::string> reasons = airlight::wavelet_fog::WaveletFog().supports(scene, settings);
   for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
   const Options options = airlight::wavelet_fog::read_options(settings);
-  if (options.variant == Options::Variant::pre)
-    reasons.push_back("variant = pre is for the CPU: expected paper or tele, which have the same sum");
   if (options.table > 0) reasons.push_back("table is for the CPU: shaders integrate exactly");
   return reasons;
 }

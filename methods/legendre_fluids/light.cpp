@@ -22,7 +22,7 @@ std::unique_ptr<scene::Prepared> LegendreLight::prepare_supported(std::shared_pt
   const LightOptions options = read_light_options(settings);
   if (options.variant == LightOptions::Variant::paper)
     return prepare_paper(std::move(scene), options.paper, settings.canonical());
-  return prepare_rays(with_sky(std::move(scene), options.ray), options.ray, settings.canonical());
+  return prepare_rays(std::move(scene), options.ray, settings.canonical());
 }
 
 }  // namespace airlight::legendre_fluids

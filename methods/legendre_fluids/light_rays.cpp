@@ -86,7 +86,7 @@ void LightRays::Walk::stretch(Interval t, bool visible, int halvings) {
   std::vector<Eigen::VectorXd> columns(media.size());
   for (std::size_t m = 0; m < media.size() && visible; ++m) {
     Eigen::VectorXd values(n);
-    media[m].columns[light].along(ray, places.data(), int(n), values.data());
+    media[m].columns[light]->along(ray, places.data(), int(n), values.data());
     columns[m] = analysis * values;
     const double missed =
         columns[m].tail(std::min(last_orders, n)).cwiseAbs().sum() * media[m].medium->sigma_t.maxCoeff();
@@ -115,11 +115,14 @@ void LightRays::Walk::stretch(Interval t, bool visible, int halvings) {
   rays.rule_.add(series, 0.5 * t.length(), sum, visits.work);
 }
 
-LightRays::LightRays(const scene::Scene& scene, const RayOptions& options)
+LightRays::LightRays(const scene::Scene& scene, const RayOptions& options, const LightRays* before)
     : geometry_(scene.geometry.get()),
       options_(options),
-      media_(scene, rounding_share * options.tolerance),
-      rule_(media_.coefficients, options.points, options.tolerance),
+      media_(scene, before ? &before->media_ : nullptr),
+      columns_made_(media_.find_columns(rounding_share * options.tolerance, before ? &before->media_ : nullptr)),
+      rule_(before && before->rule_.coefficients() == media_.coefficients
+                ? before->rule_
+                : PanelRule(media_.coefficients, options.points, options.tolerance)),
       shadowed_(shadowed_lights(scene, media_)) {}
 
 bool LightRays::shadowed() const { return std::find(shadowed_.begin(), shadowed_.end(), true) != shadowed_.end(); }
@@ -134,7 +137,7 @@ std::vector<double> LightRays::cuts(const Ray& ray, double end, std::size_t ligh
     range = {std::min(range.lo, inside.lo), std::max(range.hi, inside.hi)};
     cuts.insert(cuts.end(), {inside.lo, inside.hi});
     planes.clear();
-    m.columns[light].cuts(ray, true, planes);
+    m.columns[light]->cuts(ray, true, planes);
     for (const double t : planes)
       if (t > inside.lo && t < inside.hi) cuts.push_back(t);
     if (!m.field->negative()) continue;
@@ -143,7 +146,7 @@ std::vector<double> LightRays::cuts(const Ray& ray, double end, std::size_t ligh
   }
   planes.clear();
   for (const LitMedium& m : media_.media)  // one medium's shadow in another
-    if (media_.media.size() > 1) m.columns[light].cuts(ray, false, planes);
+    if (media_.media.size() > 1) m.columns[light]->cuts(ray, false, planes);
   for (const double t : planes)
     if (t > range.lo && t < range.hi) cuts.push_back(t);
   std::sort(cuts.begin(), cuts.end());

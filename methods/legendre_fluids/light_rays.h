@@ -32,8 +32,11 @@ struct RayVisits {
 
 class LightRays {
  public:
-  LightRays(const scene::Scene&, const RayOptions&);  // keeps a reference to the scene
+  // Keeps a reference to the scene. With `before`, the light of the frame before under the same options, what has not changed is shared.
+  LightRays(const scene::Scene&, const RayOptions&, const LightRays* before = nullptr);
   const LitMedia& media() const { return media_; }
+  int columns_made() const { return columns_made_; }  // of a medium towards a light; others are of the frame before
+  double negative_share() { return media_.greatest_negative_share(); }
   bool shadowed() const;  // can surfaces stand before a light at all
 
   // Over 0 < t < end, which may be infinite [W/m^2/sr].
@@ -51,6 +54,7 @@ class LightRays {
   const scene::Geometry* geometry_;
   RayOptions options_;
   LitMedia media_;
+  int columns_made_;
   PanelRule rule_;
   std::vector<bool> shadowed_;  // by light
 };

@@ -5,6 +5,7 @@
 #include "scene/light/background.h"
 #include "scene/light/scattered_lights.h"
 #include "scene/math/legendre_range.h"
+#include "scene/media/same_medium.h"
 
 namespace airlight::legendre_fluids {
 namespace {
@@ -69,6 +70,16 @@ scene::LegendrePointer field_within_region(const scene::Medium& medium) {
       inside, field->shape(), scene::along_axes(part[0], part[1], part[2], field->coefficients(), field->shape()));
 }
 
+bool same_density(const scene::Medium& a, const scene::Medium& b) {
+  scene::Medium other = b;
+  other.sigma_t = a.sigma_t, other.albedo = a.albedo, other.phase = a.phase;
+  const auto *x = std::get_if<scene::LegendrePointer>(&a.field), *y = std::get_if<scene::LegendrePointer>(&b.field);
+  if (x && y && (*x)->shape() == (*y)->shape() && (*x)->box().lo == (*y)->box().lo &&
+      (*x)->box().hi == (*y)->box().hi && (*x)->coefficients() == (*y)->coefficients())
+    other.field = a.field;
+  return scene::same_medium(a, other);
+}
+
 double negative_share(const scene::TensorShape& shape, const Eigen::VectorXd& coefficients) {
   std::array<Eigen::MatrixXd, 3> values;
   std::array<Eigen::VectorXd, 3> weight;
@@ -116,31 +127,60 @@ std::vector<bool> shadowed_lights(const scene::Scene& scene, const LitMedia& lit
   return shadowed;
 }
 
-LitMedia::LitMedia(const scene::Scene& scene, double rounding) {
+LitMedia::LitMedia(const scene::Scene& scene, const LitMedia* before) {
   for (const scene::Light& light : scene.lights)
     if (const auto* sun = std::get_if<scene::DirectionalLight>(&light);
         sun && (scatter(scene.media, light) || (scene.geometry && scene::shines(light))))
       lights.push_back(*sun);
   for (const scene::Medium& medium : scene.media) {
     if (!extinguishes(medium)) continue;
-    scene::LegendrePointer field = field_within_region(medium);
-    if (!field || field->greatest() == 0) continue;
+    const LitMedium* known = before && media.size() < before->media.size() ? &before->media[media.size()] : nullptr;
+    if (known && !same_density(*known->medium, medium)) known = nullptr;
+    LitMedium lit{&medium, known ? known->field : field_within_region(medium)};
+    if (!lit.field || lit.field->greatest() == 0) continue;
+    if (known) lit.negative_share = known->negative_share;
     int along = 2;
-    for (const int n : field->shape()) along += n - 1;
+    for (const int n : lit.field->shape()) along += n - 1;
     coefficients = std::max(coefficients, along);
     grey = grey && (medium.sigma_t == medium.sigma_t[0]).all();
-    media.push_back({&medium, std::move(field), {}});
+    media.push_back(std::move(lit));
   }
   const auto negative = [](const LitMedium& m) { return m.field->negative(); };
   if (std::any_of(media.begin(), media.end(), negative)) coefficients = std::max(coefficients, least_beside_kinks);
-  for (LitMedium& medium : media)
-    for (const scene::DirectionalLight& light : lights)
-      medium.columns.emplace_back(*medium.field, light.to_light, rounding / medium.medium->sigma_t.maxCoeff());
+}
+
+int LitMedia::find_columns(double rounding, const LitMedia* before) {
+  int made = 0;
+  for (std::size_t i = 0; i < media.size(); ++i) {
+    LitMedium& m = media[i];
+    m.rounding = rounding / m.medium->sigma_t.maxCoeff();
+    const LitMedium* known = before && i < before->media.size() ? &before->media[i] : nullptr;
+    if (known && (known->field != m.field || known->rounding != m.rounding)) known = nullptr;
+    for (const scene::DirectionalLight& light : lights) {
+      std::size_t found = 0;
+      while (known && found < known->columns.size() && before->lights[found].to_light != light.to_light) ++found;
+      const bool keeps = known && found < known->columns.size();
+      m.columns.push_back(keeps ? known->columns[found]
+                                : std::make_shared<const LightColumns>(*m.field, light.to_light, m.rounding));
+      made += keeps ? 0 : 1;
+    }
+  }
+  return made;
+}
+
+double LitMedia::greatest_negative_share() {
+  double most = 0;
+  for (LitMedium& m : media) {
+    if (!m.negative_share)
+      m.negative_share = m.field->negative() ? negative_share(m.field->shape(), m.field->coefficients()) : 0;
+    most = std::max(most, *m.negative_share);
+  }
+  return most;
 }
 
 Rgb LitMedia::light_depth(const Point3& x, std::size_t light) const {
   Rgb depth = Rgb::Zero();
-  for (const LitMedium& m : media) depth += m.medium->sigma_t * m.columns[light].at(x);
+  for (const LitMedium& m : media) depth += m.medium->sigma_t * m.columns[light]->at(x);
   return depth;
 }
 

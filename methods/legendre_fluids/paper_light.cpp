@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "methods/legendre_fluids/lit_media.h"
@@ -53,6 +54,17 @@ PaperMedium paper_medium(const scene::Scene& scene) {
   for (std::size_t c = 0; c < 3 && !one; ++c) all.scattering[c] = field(scatters[c]);
   all.density = field(sum);
   return all;
+}
+
+std::optional<PaperMedium> kept_medium(const PaperMedium& medium, const scene::Scene& before, const scene::Scene& now) {
+  const auto same = [](const scene::Medium& a, const scene::Medium& b) {
+    return extinguishes(a) == extinguishes(b) && (a.albedo == b.albedo).all() && same_density(a, b);
+  };
+  if (!std::equal(before.media.begin(), before.media.end(), now.media.begin(), now.media.end(), same))
+    return std::nullopt;
+  PaperMedium kept = medium;
+  if (medium.medium) kept.medium = &now.media[std::size_t(medium.medium - before.media.data())];
+  return kept;
 }
 
 std::string several_against(const scene::Scene& scene) {

@@ -1,5 +1,7 @@
 // Light of one medium in Legendre coefficients: E_d of a direction, and E_s scattered along another, equations 22 to 24.
 #pragma once
+#include <optional>
+
 #include "methods/legendre_fluids/light_system.h"
 #include "scene/media/legendre_box.h"
 #include "scene/scene.h"
@@ -23,6 +25,8 @@ struct PaperMedium {
   bool alike(std::size_t channel, std::size_t other) const;
 };
 PaperMedium paper_medium(const scene::Scene&);
+// The medium of a frame whose scene is `now`, where its fields are those of the frame before; nothing where they are not.
+std::optional<PaperMedium> kept_medium(const PaperMedium&, const scene::Scene& before, const scene::Scene& now);
 // Why the media are none such; empty if they are.
 std::string several_against(const scene::Scene&);
 

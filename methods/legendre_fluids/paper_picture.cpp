@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <mutex>
 
+#include "methods/legendre_fluids/light_options.h"
 #include "methods/legendre_fluids/lit_media.h"
 #include "methods/legendre_fluids/paper_view.h"
 #include "methods/legendre_fluids/point_values.h"
@@ -20,12 +21,24 @@ using Coefficients = std::array<Eigen::VectorXd, 3>;  // of the channels
 
 class PreparedPaper final : public scene::Prepared {
  public:
-  PreparedPaper(std::shared_ptr<const scene::Scene>, const PaperOptions&, std::string settings);
+  PreparedPaper(std::shared_ptr<const scene::Scene> scene, const PaperOptions& options, std::string settings)
+      : options_(options), settings_(std::move(settings)) {
+    times_ = prepare(std::move(scene));
+  }
   std::vector<scene::Stage> stages() const override;
   std::vector<scene::StageTime> prepare_times() const override { return times_; }
   scene::Rendering render(const scene::View&, const scene::Execution&) const override;
+  std::optional<std::vector<scene::StageTime>> next(std::shared_ptr<const scene::Scene>,
+                                                    const scene::Execution&) override;
 
  private:
+  // E_d of a light, 1 where it comes in.
+  struct Direct {
+    Coefficients of_channel;
+    double negative = 0;  // greatest share of the box where it is below 0
+  };
+  std::vector<scene::StageTime> prepare(std::shared_ptr<const scene::Scene>);
+  std::shared_ptr<const Direct> solve_direct(const scene::DirectionalLight&);
   bool scatters() const { return field_ && scene::why_nothing_scatters(*scene_).empty(); }
   bool behind_kept() const {
     return (scene_->geometry && !lights_.empty()) || scene::has_environment(*scene_) || !scene_->backdrops.empty();
@@ -46,8 +59,8 @@ class PreparedPaper final : public scene::Prepared {
   std::optional<PaperLight> light_;
   std::array<std::optional<DensityProduct>, 3> scatters_;  // of an albedo that is a field
   std::array<bool, 3> moving_;
-  std::vector<Coefficients> direct_;  // E_d of each light, 1 where it comes in
-  int iterations_ = 0;
+  std::vector<std::shared_ptr<const Direct>> direct_;  // of each light
+  int iterations_ = 0, direct_made_ = 0;               // for this frame; others are of frames before
   double negative_direct_ = 0, negative_density_ = 0;  // shares of the box
   std::vector<scene::StageTime> times_;
 };
@@ -62,30 +75,62 @@ void for_extinctions(const Rgb& sigma_t, Coefficients& all, const F& solve) {
   }
 }
 
-PreparedPaper::PreparedPaper(std::shared_ptr<const scene::Scene> scene, const PaperOptions& options,
-                             std::string settings)
-    : scene_(std::move(scene)), options_(options), settings_(std::move(settings)), moving_(moving_axes(*scene_)) {
+// For a first scene, or one that keeps what the frame before has in common with it.
+std::vector<scene::StageTime> PreparedPaper::prepare(std::shared_ptr<const scene::Scene> scene) {
   scene::Stopwatch watch;
+  const std::shared_ptr<const scene::Scene> before = std::exchange(scene_, std::move(scene));
+  const std::vector<scene::DirectionalLight> lights_before = std::exchange(lights_, {});
+  const std::vector<std::shared_ptr<const Direct>> direct_before = std::exchange(direct_, {});
+  const Rgb sigma_before = medium_ ? medium_->sigma_t : Rgb(Rgb::Zero());
+  const std::array<bool, 3> moving_before = std::exchange(moving_, moving_axes(*scene_));
   for (const scene::Light& light : scene_->lights)
     if (const auto* sun = std::get_if<scene::DirectionalLight>(&light);
         sun && (scatter(scene_->media, light) || (scene_->geometry && scene::shines(light))))
       lights_.push_back(*sun);
-  media_ = paper_medium(*scene_);
+  const std::optional<PaperMedium> kept =
+      before && moving_ == moving_before ? kept_medium(media_, *before, *scene_) : std::nullopt;
+  media_ = kept ? *kept : paper_medium(*scene_);
   medium_ = media_.medium;
   field_ = media_.density;
-  if (!field_) return;
-  light_.emplace(*field_, options_, moving_);
-  for (std::size_t c = 0; c < 3 && media_.scattering[0]; ++c)
-    scatters_[c].emplace(media_.scattering[c]->coefficients(), field_->shape(), light_->shape(), options_.truncation);
-  for (const scene::DirectionalLight& light : lights_) {
-    direct_.emplace_back();
-    for_extinctions(medium_->sigma_t, direct_.back(),
-                    [&](double sigma) { return light_->direct(-light.to_light, sigma, &iterations_); });
-    for (const Eigen::VectorXd& e : direct_.back())
-      negative_direct_ = std::max(negative_direct_, negative_share(light_->shape(), e));
+  iterations_ = direct_made_ = 0;
+  if (!kept) {
+    light_.reset();
+    scatters_ = {};
+    negative_density_ = 0;
   }
-  if (field_->negative()) negative_density_ = negative_share(field_->shape(), field_->coefficients());
-  times_ = {{lights_.empty() ? "operators" : "direct systems", watch.lap()}};
+  if (!field_) return {};
+  if (!kept) {
+    light_.emplace(*field_, options_, moving_);
+    for (std::size_t c = 0; c < 3 && media_.scattering[0]; ++c)
+      scatters_[c].emplace(media_.scattering[c]->coefficients(), field_->shape(), light_->shape(), options_.truncation);
+    if (field_->negative()) negative_density_ = negative_share(field_->shape(), field_->coefficients());
+  }
+  const bool keeps_direct = kept && (medium_->sigma_t == sigma_before).all();
+  for (const scene::DirectionalLight& light : lights_) {
+    std::size_t known = 0;
+    while (known < lights_before.size() && lights_before[known].to_light != light.to_light) ++known;
+    direct_.push_back(keeps_direct && known < direct_before.size() ? direct_before[known] : solve_direct(light));
+  }
+  negative_direct_ = 0;
+  for (const auto& direct : direct_) negative_direct_ = std::max(negative_direct_, direct->negative);
+  if (kept && direct_made_ == 0) return {};
+  return {{lights_.empty() ? "operators" : "direct systems", watch.lap()}};
+}
+
+std::shared_ptr<const PreparedPaper::Direct> PreparedPaper::solve_direct(const scene::DirectionalLight& light) {
+  auto direct = std::make_shared<Direct>();
+  for_extinctions(medium_->sigma_t, direct->of_channel,
+                  [&](double sigma) { return light_->direct(-light.to_light, sigma, &iterations_); });
+  for (const Eigen::VectorXd& e : direct->of_channel)
+    direct->negative = std::max(direct->negative, negative_share(light_->shape(), e));
+  ++direct_made_;
+  return direct;
+}
+
+std::optional<std::vector<scene::StageTime>> PreparedPaper::next(std::shared_ptr<const scene::Scene> scene,
+                                                                 const scene::Execution&) {
+  if (!unsupported_light(*scene, {LightOptions::Variant::paper, {}, options_}).empty()) return std::nullopt;
+  return prepare(std::move(scene));
 }
 
 std::vector<scene::Stage> PreparedPaper::stages() const {
@@ -126,8 +171,9 @@ Scattered PreparedPaper::scattered(const Vec3& direction) const {
     while (!media_.alike(same, c) || shares[same] != shares[c]) ++same;
     all.of_channel[c] = same < c ? all.of_channel[same] : all.series.size();
     if (same < c) continue;
-    Eigen::VectorXd direct = shares[c][0] * omega[0] * direct_[0][c];
-    for (std::size_t l = 1; l < lights_.size(); ++l) direct += shares[c][Eigen::Index(l)] * omega[l] * direct_[l][c];
+    Eigen::VectorXd direct = shares[c][0] * omega[0] * direct_[0]->of_channel[c];
+    for (std::size_t l = 1; l < lights_.size(); ++l)
+      direct += shares[c][Eigen::Index(l)] * omega[l] * direct_[l]->of_channel[c];
     all.series.push_back(
         light_->scattered(direct, direction, sigma, sigma, scatters_[c] ? &*scatters_[c] : nullptr, &all.iterations));
   }
@@ -143,7 +189,7 @@ Rgb PreparedPaper::left_of_light(const Point3& x, std::size_t light) const {
   for (int c = 0; c < 3; ++c)
     left[c] = c > 0 && medium_->sigma_t[c] == medium_->sigma_t[0]
                   ? left[0]
-                  : std::max(0.0, series_value(light_->shape(), direct_[light][std::size_t(c)].data(),
+                  : std::max(0.0, series_value(light_->shape(), direct_[light]->of_channel[std::size_t(c)].data(),
                                                field_->local(ray.at(t.lo))));
   return left;
 }
@@ -204,6 +250,7 @@ scene::Rendering PreparedPaper::render(const scene::View& view, const scene::Exe
   result.counters["rays"] = double(film.pixels());
   if (!scatters()) return result;
   result.counters["unknowns"] = double(scene::tensor_size(light_->shape()));
+  result.counters["direct_systems_made"] = double(direct_made_);
   result.counters["iterations"] = double(iterations_ + scattered.iterations);
   result.counters["negative_share"] = met > 0 ? double(negative) / double(met) : 0;
   result.counters["negative_direct_share"] = negative_direct_;

@@ -1,9 +1,10 @@
-// Cost of a frame that differs from the previous one in its camera, its lights or nothing, for every renderer on the
+// Cost of a frame that differs from the previous one in its camera or its lights, for every renderer on the
 // device. Nothing is uploaded, nothing is allocated, the host waits once, and only the wanted layers are downloaded.
 // The picture has the bits of a cold one.
 #include <set>
 
 #include "experiments/application/renderers.h"
+#include "experiments/driver/next_frames.h"
 #include "scene/media/legendre_box.h"
 #include "tests/gpu/device.h"
 #include "tests/methods/compensated_ray_marching/puffs.h"
@@ -17,7 +18,7 @@ using test::Given;
 
 namespace {
 
-enum class Moves { nothing, camera, lights };
+enum class Moves { camera, lights };
 
 struct Case {
   const char *renderer, *scene;  // below experiments/scenes, or one of scene_of
@@ -58,9 +59,9 @@ const Case cases[] = {
     {"wavelet_fog_gpu", "wavelet_fog/patchy", {{"variant", "skip"}}, Moves::camera, 2, 2, 0, 48},
     {"compensated_ray_marching_gpu", "puffs", {{"cells", "8"}}, Moves::camera, 19, 1},
     {"compensated_ray_marching_gpu", "puffs", {{"variant", "paper"}}, Moves::camera, 32, 1},
-    {"legendre_fluids_gpu", "smoke", {}, Moves::nothing, 5, 5},
-    {"legendre_fluids_gpu", "smoke", systems, Moves::nothing, 12, 1, 8, 8},
-    {"legendre_fluids_gpu", "smoke", upwind, Moves::nothing, 12, 1, 8, 8},
+    {"legendre_fluids_gpu", "smoke", {}, Moves::lights, 5, 5},
+    {"legendre_fluids_gpu", "smoke", systems, Moves::camera, 12, 1, 8, 8},
+    {"legendre_fluids_gpu", "smoke", upwind, Moves::camera, 12, 1, 8, 8},
 };
 
 std::shared_ptr<scene::Scene> scene_of(const std::string& name) {
@@ -87,6 +88,7 @@ DEVICE_TEST_CASE("a warm frame stays on the device, and is the cold one", "[gpu]
       if (c.moves == Moves::camera) there->camera.position += Vec3(0.01 * place, 0, 0);
       if (c.moves == Moves::lights) {
         for (scene::Light& light : there->lights) light = scene::moved(light, place * Vec3(0.02, -0.01, 0.03));
+        experiments::turn_lights(*there, 0.02 * place);
         const auto times = prepared->next(there, {1, {}});
         REQUIRE(times);
         CHECK(times->empty());

@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""tests/tools/loop_counts.py OUT [--program FILE]: how often the loops of the GPU side go round, in ten scenes at 800 x 600.
+"""tests/tools/loop_counts.py OUT [--program FILE]: how often the loops of the GPU side go round, in the scenes of the papers'
+tables of times, at 800 x 600.
 
-Writes OUT/marked/SHADER, the shaders with every condition of a loop counted, renders Tables 1 and 2 with them (any driver, llvmpipe
-too), and reads the counts from the picture: the pixels of a block of 8 x 4, what a warp is on a GPU, all show the same loop's.
+Writes OUT/marked/SHADER, the shaders with every condition of a loop counted, renders the scenes with them (any driver, llvmpipe
+too), and reads the counts from the picture: the pixels of a block of 8 x 4, what a warp is on a GPU, all show the same three loops'.
+A hash of the block chooses them, so that the blocks of a loop lie all over the picture.
 OUT/loops.csv: of each scene, shader and loop the mean by invocation, and that of the greatest in each block. OUT/dump/SCENE holds the
 shaders, with `COUNT_TRIPS`, for scripts/frame_budgets."""
 import argparse
@@ -19,20 +21,39 @@ WIDTH, HEIGHT, SCALE = 800, 600, 1024
 FOGSHOP = [("fogshop/table1/" + name, name) for name in ("gargoyle", "box", "terrain", "city", "motorcycle")]
 PLANES = [("shadow_planes/" + file, name) for file, name in
           (("fig8a", "pens"), ("fig8b", "media"), ("fig8c", "columns"), ("fig1", "nave"), ("fig7_shade", "Figure 7"))]
-OPTIONS = {"fogshop_gpu": ["--set", "variant=paper", "--set", "reflectance=npsf"], "shadow_planes_gpu": []}
+OPTIONS = {"fogshop_gpu": ["--set", "variant=paper", "--set", "reflectance=npsf"], "shadow_planes_gpu": [], "wavelet_fog_gpu": []}
+SPLINES = {"Haar": 0, "linear": 1, "quadratic": 2}
+
+
+def wavelet_fog():
+    """Tables 1 to 3 of Giroud and Biri 2010: scene, title and options of each entry."""
+    def entry(table, spline, size, *settings):
+        sets = [word for setting in settings for word in ("--set", setting.replace(" ", "="))]
+        return ("wavelet_fog/table_%d" % size, " ".join([f"{table}: {spline} {size}", *settings[1:]]),
+                ["--override", f"medium.0.degree={SPLINES[spline]}", *sets])
+    return ([entry(1, spline, size, "variant direct") for spline in SPLINES for size in (16, 32, 64)] +
+            [entry(2, "linear", 64, "variant paper", f"levels {levels}", f"mu {mu}")
+             for levels in (1, 2, 3) for mu in ("1", "0.8", "0.6", "0.4", "0.2", "0")] +
+            [entry(3, spline, size, "variant paper", f"levels {levels}", "mu 1")
+             for spline, size in (("linear", 16), ("linear", 32), ("quadratic", 32)) for levels in (1, 2, 3)])
+
+
 # Where a shader's counts go in the picture: statements replaced (by file), and the layer that then shows them.
 SHOWN = {
     "raster/first_hits.comp": {"fogshop_gpu": "fogshop/surfaces.comp", "shadow_planes_gpu": "shadow_planes/shade.comp"},
     "fogshop/paper.comp": ("pixels[place_of(pixel)] = vec4(airlight * albedo, depth);",
-                           "pixels[place_of(pixel)] = vec4(vec3(trips_shown(pixel, grid_width)), 0);", "airlight"),
+                           "pixels[place_of(pixel)] = vec4(trips_shown(pixel), 0);", "airlight"),
     "fogshop/surfaces.comp": ("  if (loops_cut())",
-                              "  for (int c = 0; c < 3; ++c) surface_layer[3 * place + c] = trips_shown(pixel, view_width);\n"
+                              "  for (int c = 0; c < 3; ++c) surface_layer[3 * place + c] = trips_shown(pixel)[c];\n"
                               "  if (loops_cut())", "surface"),
     "fogshop/environment.comp": ("  pixels[index].rgb += max(sum * T * exp(-T), vec3(0));",
-                                 "  pixels[index].rgb = vec3(trips_shown(pixel, width)) + 0 * max(sum * T * exp(-T), vec3(0));",
+                                 "  pixels[index].rgb = trips_shown(pixel) + 0 * max(sum * T * exp(-T), vec3(0));",
                                  "airlight"),
     "shadow_planes/shade.comp": ("  lit_pixels[place] = lit;",
-                                 "  lit.airlight.rgb += trips_shown(pixel, view_width);\n  lit_pixels[place] = lit;", "airlight"),
+                                 "  lit.airlight.rgb += trips_shown(pixel);\n  lit_pixels[place] = lit;", "airlight"),
+    "wavelet_fog/columns.comp": ("    depths[place] = part + 1 < parts ? vec4(before.rgb, sum) : vec4(before.rgb + depth_of(sum), 0);",
+                                 "    depths[place] = vec4((part > 0 ? before.rgb : vec3(0)) + trips_shown(at), before.w * 0 + sum * 0);",
+                                 "mean"),
 }
 
 
@@ -102,9 +123,10 @@ def marked(target):
             return len(loops) - 1
         texts[name] = loops_counted(branches_counted(texts[name], number), number)
     definition = ("\n#define COUNT_TRIPS 1\n#if COUNT_TRIPS\nuint trips[%d];\nbool trip(int k) { ++trips[k]; return true; }\n"
-                  "float trips_shown(ivec2 pixel, int width) {\n  int k = (pixel.y / 4 * ((width + 7) / 8) + pixel.x / 8) %% %d;\n"
-                  "  uint sum = 0u;\n  for (int i = 0; i < %d; ++i) if (i == k) sum = trips[i];\n  return %d.0 * float(sum);\n}\n"
-                  "#endif\n" % (len(loops), len(loops), len(loops), SCALE))
+                  "vec3 trips_shown(ivec2 pixel) {\n  vec3 sum = vec3(0);\n  for (int c = 0; c < 3; ++c) {\n"
+                  "    uint k = (uint(pixel.x / 8) * 40503u + uint(pixel.y / 4) * 30011u + uint(c) * 20749u) * 2654435769u;\n"
+                  "    k = (k ^ k >> 15) %% %du;\n    for (int i = 0; i < %d; ++i) if (i == int(k)) sum[c] = %d.0 * float(trips[i]);\n"
+                  "  }\n  return sum;\n}\n#endif\n" % (len(loops), len(loops), len(loops), SCALE))
     for name, text in texts.items():
         if name.endswith(".comp"):
             added = definition if name == target else "#define trip(k) true\n"
@@ -118,7 +140,7 @@ def shown(texts, target, method):
     """Has the counts of `target` shown in the picture; returns the layer."""
     if target == "raster/first_hits.comp":
         old = "if (keeps_primitives != 0) primitives[first_ray + place] = best.primitive;"
-        new = "#if COUNT_TRIPS\n  primitives[first_ray + place] = int(trips_shown(at, columns));\n#else\n  " + old + "\n#endif"
+        new = "#if COUNT_TRIPS\n  primitives[first_ray + place] = int(trips_shown(at).x);\n#else\n  " + old + "\n#endif"
         texts[target] = replaced(texts[target], "  " + old, new)
         by = SHOWN[target][method]
         if method == "fogshop_gpu":
@@ -133,6 +155,10 @@ def shown(texts, target, method):
         texts[by] = replaced(texts[by], "  lit_pixels[place] = lit;",
                              "  lit.airlight.rgb = vec3(float(shown));\n  lit_pixels[place] = lit;")
         return "airlight"
+    if target == "wavelet_fog/columns.comp":
+        texts["wavelet_fog/composition.comp"] = replaced(texts["wavelet_fog/composition.comp"],
+                                                         "has_fog != 0 ? depths[place].rgb : vec3(0), behind);",
+                                                         "vec3(0), depths[place].rgb);")
     old, new, layer = SHOWN[target]
     texts[target] = replaced(texts[target], old, "\n#if COUNT_TRIPS\n" + new + "\n#else\n" + old + "\n#endif\n")
     return layer
@@ -144,27 +170,34 @@ def replaced(text, old, new):
     return text.replace(old, new)
 
 
-def picture(file):
-    """A PFM file's rows, top first: the first channel."""
+def pictures(file):
+    """A PFM file's channels: rows, top first."""
     data = file.read_bytes()
     head = data.split(b"\n", 3)
     width, height = map(int, head[1].split())
     values = array.array("f", head[3])
     channels = 3 if head[0] == b"PF" else 1
-    return [values[y * width * channels:(y + 1) * width * channels:channels] for y in reversed(range(height))]
+    return [[values[y * width * channels + c:(y + 1) * width * channels:channels] for y in reversed(range(height))]
+            for c in range(channels)]
 
 
-def counts(rows, loops):
+def loop_shown(x, y, channel, loops):
+    """The loop that a channel of a block shows: trips_shown in the shaders."""
+    k = (x // 8 * 40503 + y // 4 * 30011 + channel * 20749) * 2654435769 & 0xffffffff
+    return (k ^ k >> 15) % loops
+
+
+def counts(channels, loops):
     """By loop: mean of an invocation, mean of the greatest of a block."""
     sums, most, blocks = [0.0] * loops, [0.0] * loops, [0] * loops
-    across = (WIDTH + 7) // 8
-    for y in range(0, HEIGHT, 4):
-        for x in range(0, WIDTH, 8):
-            block = [round(v / SCALE) for row in rows[y:y + 4] for v in row[x:x + 8]]
-            k = (y // 4 * across + x // 8) % loops
-            sums[k] += sum(block) / len(block)
-            most[k] += max(block)
-            blocks[k] += 1
+    for channel, rows in enumerate(channels):
+        for y in range(0, HEIGHT, 4):
+            for x in range(0, WIDTH, 8):
+                block = [round(v / SCALE) for row in rows[y:y + 4] for v in row[x:x + 8]]
+                k = loop_shown(x, y, channel, loops)
+                sums[k] += sum(block) / len(block)
+                most[k] += max(block)
+                blocks[k] += 1
     return [(sums[k] / blocks[k], most[k] / blocks[k]) for k in range(loops)]
 
 
@@ -178,8 +211,8 @@ def main():
         sys.exit(f"loop_counts: there is no program at {arguments.program}; run scripts/build first")
     out = arguments.out.resolve()
     rows, failed = [], 0
-    for method, scenes in (("fogshop_gpu", FOGSHOP), ("shadow_planes_gpu", PLANES)):
-        targets = [name for name in SHOWN if name.startswith(("raster/", method.removesuffix("_gpu")))]
+    for method, scenes in (("fogshop_gpu", FOGSHOP), ("shadow_planes_gpu", PLANES), ("wavelet_fog_gpu", wavelet_fog())):
+        targets = [name for name in SHOWN if name.startswith(method.removesuffix("_gpu")) or method in SHOWN[name]]
         for target in targets:
             texts, loops = marked(target)
             layer = shown(texts, target, method)
@@ -187,7 +220,7 @@ def main():
             for name, text in texts.items():
                 (folder / name).parent.mkdir(parents=True, exist_ok=True)
                 (folder / name).write_text(text)
-            for scene, title in scenes:
+            for scene, title, *options in scenes:
                 if arguments.only not in title + " " + target:
                     continue
                 if target == "fogshop/environment.comp" and title in ("gargoyle", "box"):  # lit by points
@@ -196,7 +229,7 @@ def main():
                 environment = dict(os.environ, AIRLIGHT_SHADERS=str(folder), AIRLIGHT_DUMP_SHADERS=str(out / "dump" / title))
                 (out / "dump" / title).mkdir(parents=True, exist_ok=True)
                 command = [arguments.program, "render", str(ROOT / "experiments/scenes" / (scene + ".toml")), "-m", method,
-                           *OPTIONS[method], "--override", f"film.width={WIDTH}", "--override", f"film.height={HEIGHT}",
+                           *OPTIONS[method], *(options[0] if options else []), "--override", f"film.width={WIDTH}", "--override", f"film.height={HEIGHT}",
                            "-o", str(image)]
                 result = subprocess.run(command, env=environment, capture_output=True, text=True)
                 if result.returncode:
@@ -205,7 +238,8 @@ def main():
                     continue
                 plain = image.with_suffix(".pfm")
                 subprocess.run([arguments.program, "convert", str(image), str(plain), "--layer", layer], check=True)
-                found = counts(picture(plain), len(loops))
+                channels = pictures(plain)  # where primitives are shown, all are alike
+                found = counts(channels[:1] if target.startswith("raster/") else channels, len(loops))
                 rows += [[title, target, k, place, f"{mean:.6g}", f"{most:.6g}"]
                          for k, (place, (mean, most)) in enumerate(zip(loops, found))]
                 print(title, target, "done", flush=True)

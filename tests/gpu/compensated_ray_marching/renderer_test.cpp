@@ -72,6 +72,22 @@ DEVICE_TEST_CASE("compensated march on the device: colours, phase functions, ord
   compare(scene, {{"cells", "12"}, {"multiple", "none"}});
 }
 
+DEVICE_TEST_CASE("compensated march on the device: as many directions and bands as there can be",
+                 "[gpu][compensated_ray_marching]") {
+  const auto scene = scene_13_wide(puffs(), 3, 0.8, uneven());
+  Given given = diffusion;
+  given["cells"] = "6";
+  given["levels"] = "32";
+  given["order"] = "6";
+  compare(scene, given);
+  compare(scene, {{"cells", "6"},
+                  {"tolerance", "1e-5"},
+                  {"levels", "4"},
+                  {"order", "6"},
+                  {"ordinate_levels", "16"},
+                  {"azimuths", "64"}});
+}
+
 DEVICE_TEST_CASE("compensated march on the device: voxels, turned, and what Gaussians leave",
                  "[gpu][compensated_ray_marching]") {
   const auto grid = uneven_voxels({-1, -0.4, -0.8});

@@ -72,6 +72,18 @@ DEVICE_TEST_CASE("fogshop: GPU agrees with CPU on Henyey-Greenstein's phase func
       }
 }
 
+DEVICE_TEST_CASE("fogshop: GPU agrees with CPU under forty lights", "[gpu]") {
+  auto scene = std::make_shared<scene::Scene>(*scene_named("a30"));
+  const scene::PointLight light = std::get<scene::PointLight>(scene->lights[0]);
+  scene->lights.clear();
+  for (int i = 0; i < 40; ++i)
+    scene->lights.emplace_back(
+        scene::PointLight{light.position + 0.5 * Vec3(std::sin(i), std::cos(1.7 * i), std::sin(2.3 * i)),
+                          light.intensity * (0.01 + 0.001 * i), light.radius});
+  finish(*scene);
+  for (const char* variant : {"paper", "S"}) agree(scene, {{"variant", variant}, {"erf", "erf10"}}, 2.4e-5, 7e-6);
+}
+
 // Where a light map would miss small Gaussians, both take sums.
 DEVICE_TEST_CASE("fogshop: a puff in a bank, GPU agrees with CPU", "[gpu]") {
   auto scene = std::make_shared<scene::Scene>();

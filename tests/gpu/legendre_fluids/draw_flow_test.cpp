@@ -21,7 +21,8 @@ namespace {
 
 constexpr int n = 6;
 
-std::unique_ptr<scene::Flow> rising_blob(double background, double density = 1) {
+// With `second`, another density sinks through the first.
+std::unique_ptr<scene::Flow> rising_blob(double background, double density = 1, bool second = false) {
   scene::FlowProblem problem;
   problem.box = unit_box;
   problem.velocity = scene::Swirl{0.5};
@@ -29,6 +30,13 @@ std::unique_ptr<scene::Flow> rising_blob(double background, double density = 1) 
   problem.expansion = 1.0 / 300;
   problem.density = background;
   problem.blobs.push_back({Point3(0.2, -0.3, 0.1), 0.6, density, 30});
+  if (second) {
+    scene::NamedDensity other;
+    other.name = "other";
+    other.density = background;
+    other.blobs.push_back({Point3(-0.1, 0.4, 0), 0.7, density, 0});
+    problem.densities.push_back(other);
+  }
   const gpu::legendre_fluids::LegendreFluids solver;
   return solver.start(std::make_shared<const scene::FlowProblem>(problem),
                       scene::Settings(solver.settings(), {{"n", std::to_string(n)}}), {});
@@ -107,6 +115,57 @@ DEVICE_TEST_CASE("legendre fluids on the device: drawn where they flow by the pa
         test::render(legendre_fluids::LegendreLight(), scene_with(box_of(*flow, 1)), given).film;
     CHECK(gpu::test::quantile(expected, drawn, "airlight", 1) < 2e-5);
   }
+}
+
+DEVICE_TEST_CASE("legendre fluids on the device: two kinds of smoke are drawn where they flow",
+                 "[gpu][legendre_fluids]") {
+  const auto flow = rising_blob(0.5, 1, true);
+  const auto constant = std::make_shared<const scene::LegendreBox>(unit_box, scene::TensorShape{n, n, n},
+                                                                   3 * Eigen::VectorXd::Unit(n * n * n, 0));
+  const auto scene_of = [](const scene::LegendrePointer& one, const scene::LegendrePointer& other) {
+    auto scene = scene_with(one);
+    scene->media.push_back(smoke(other, 0.8));
+    scene->media[1].albedo = Rgb(0.2, 0.5, 0.9);
+    finish(*scene);
+    return scene;
+  };
+  const auto scene = scene_of(constant, constant);
+  const gpu::legendre_fluids::LegendreLight method;
+  const auto picture = method.prepare(scene, {method.settings(), {}}, {1, {}});
+  const scene::Film cold = picture->render(view_of(*scene), {1, {}}).film;
+  const auto take_both = [&] {
+    for (const int density : {0, 1})
+      REQUIRE(gpu::legendre_fluids::draw_flow(*picture, *flow, density, std::size_t(density)));
+  };
+  scene::Execution none{1, {}};
+  none.layers.emplace();
+  flow->step(0.05);
+  take_both();
+  picture->render(view_of(*scene), none);
+  gpu::Traffic& traffic = gpu::Context::get().traffic();
+  const gpu::Traffic before = traffic;
+  for (int frame = 0; frame < 2; ++frame) {
+    flow->step(0.05);
+    take_both();
+    picture->render(view_of(*scene), none);
+  }
+  const gpu::Traffic warm = traffic - before;
+  CHECK(warm.bytes_down == 2 * 8);  // how a step ended
+  CHECK(warm.bytes_up == 0);
+  CHECK(warm.allocations == 0);
+  const scene::Film drawn = picture->render(view_of(*scene), {1, {}}).film;
+  const auto density = [&](int which) { return std::get<scene::LegendrePointer>(flow->medium(which)); };
+  const auto expected = scene_of(density(0), density(1));
+  const scene::Film there = test::render(legendre_fluids::LegendreLight(), expected).film;
+  for (const auto& [layer, values] : there.layers) {
+    CAPTURE(layer);
+    CHECK(gpu::test::quantile(there, drawn, layer, 1) < 5e-6);
+  }
+  CHECK_FALSE(gpu::legendre_fluids::draw_flow(*picture, *flow, 2));
+  CHECK_FALSE(gpu::legendre_fluids::draw_flow(*picture, *flow, 0, 2));
+  // The next frame of the scene has the scene's densities again, although they have not changed.
+  REQUIRE(picture->next(std::make_shared<const scene::Scene>(*scene), {1, {}}));
+  CHECK(picture->render(view_of(*scene), {1, {}}).film.layers == cold.layers);
 }
 
 // Whether the systems were solved to the end is looked at where no layer is asked for, too.

@@ -41,7 +41,9 @@ void main() {
 DEVICE_TEST_CASE("lit media: extinction and source of the device are those of the processor", "[gpu][lit_media]") {
   const gpu::test::ShaderFolder shaders(at_points);
   const gpu::Use use(context);
-  for (const auto& [name, scene] : assorted_scenes())
+  auto scenes = assorted_scenes();
+  scenes.emplace_back("40 media", ray_marcher::scene_of_media(40));
+  for (const auto& [name, scene] : scenes)
     for (const bool self_shadow : {true, false}) {
       if (scene->media.empty()) continue;
       lit_media::Options options;

@@ -56,6 +56,22 @@ DEVICE_TEST_CASE("shadow planes: GPU agrees with CPU in every phase function", "
   }
 }
 
+DEVICE_TEST_CASE("shadow planes: GPU agrees with CPU in forty media", "[gpu][shadow_planes]") {
+  const auto scene = scene_of("shadow_planes/boxes_3", 20, 15);
+  const Point3 light = scene::ball(scene->lights[0])->center;
+  scene::Medium medium = scene->media[0];
+  medium.sigma_t *= 2;
+  scene->media.clear();
+  for (int i = 0; i < 40; ++i) {
+    const Point3 center = light + 2 * Vec3(std::sin(i), std::cos(1.7 * i), std::sin(2.3 * i));
+    medium.region = Box{center - Vec3::Constant(0.1), center + Vec3::Constant(0.1 + 0.005 * i)};
+    scene->media.push_back(medium);
+  }
+  finish(*scene);
+  compare(scene, {});
+  compare(scene, {{"shadows", "stencil"}});
+}
+
 // Two lights, one of them a spot; an orthographic camera; cameras and lights inside occluders; spheres; grey and
 // coloured media, boxes and slabs that overlap.
 DEVICE_TEST_CASE("shadow planes: GPU agrees with CPU in odd places", "[gpu][shadow_planes][thorough]") {

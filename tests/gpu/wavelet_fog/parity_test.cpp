@@ -41,6 +41,9 @@ DEVICE_TEST_CASE("wavelet fog: every variant on the GPU is that of the CPU", "[g
         for (const char* variant : {"tele", "paper"})
           compare(scene, {{"variant", variant}, {"coarse", coarse}, {"mu", "0.4"}}, 1e-5);
         compare(scene, {{"variant", "bound"}, {"coarse", coarse}}, 1e-5);
+        if (coarse != std::string("wavelet")) continue;
+        compare(scene, {{"variant", "pre"}, {"mu", "0.4"}}, 1e-5);
+        for (const char* variant : {"paper", "pre"}) compare(scene, {{"variant", variant}, {"mu", "1"}}, 3e-5);
       }
 }
 
