@@ -17,7 +17,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 // coefficients of z^0, z^1, ...
 template <class P, class D, class V = hn::Vec<D>>
 HWY_INLINE V ErfBy(D d, V x) {
-  constexpr int n = sizeof(P::coefficient) / sizeof(P::coefficient[0]);
+  constexpr int n = int(std::size(P::coefficient));
   const auto c = [&](int i) { return hn::Set(d, P::coefficient[i]); };
   const V magnitude = Abs(x);
   const V xc = Min(magnitude, hn::Set(d, P::cut));
