@@ -181,6 +181,13 @@ def decompressed(png):
 STEPS = (2, 4, 6, 8)  # of 255, between the values that a picture keeps
 
 
+def with_pixels(png, rows):
+    out = png[:8]
+    for name, content in chunks(png):
+        out += b"" if name == b"IDAT" else (chunk(b"IDAT", compressed(rows)) if name == b"IEND" else b"") + chunk(name, content)
+    return out
+
+
 def no_larger_than(png, most):
     """The PNG with as many bytes at the most: values are rounded to the smallest of STEPS that does it. White stays white."""
     if len(png) <= most:
@@ -188,9 +195,7 @@ def no_larger_than(png, most):
     rows = decompressed(png)
     for step in STEPS:
         table = bytes(min(255, (v + step // 2) // step * step) if v < 255 else 255 for v in range(256))
-        data, out = compressed([row.translate(table) for row in rows]), png[:8]
-        for name, content in chunks(png):
-            out += b"" if name == b"IDAT" else (chunk(b"IDAT", data) if name == b"IEND" else b"") + chunk(name, content)
+        out = with_pixels(png, [row.translate(table) for row in rows])
         if len(out) <= most:
             return out
     raise ValueError(f"the picture has {len(out)} bytes with steps of {STEPS[-1]}, expected at most {most}: split it")
@@ -211,6 +216,10 @@ def animated(png, strips, at, rate):
     """A looping film (APNG): the PNG is its first frame, which shows the first strip at the pixel `at`; the later strips replace it. Pixels
     that stay as they are have a colour of their own, which is transparent and needs little space."""
     width, height = struct.unpack(">II", png[16:24])
+    canvas, left = decompressed(png), 3 * at[0]
+    for y, row in enumerate(strips[0], at[1]):  # gnuplot blends the last pixels of a panel with what lies beside it
+        canvas[y] = canvas[y][:left] + row + canvas[y][left + len(row):]
+    png = with_pixels(png, canvas)
     colours = {pixel for rows in strips for row in rows for pixel in pixels_of(row)}
     kept = next(c for c in (bytes([255, green, 255]) for green in range(256)) if c not in colours)
     shows, changes = [pixels_of(row) for row in strips[0]], []
