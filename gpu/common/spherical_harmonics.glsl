@@ -17,7 +17,7 @@ ShPair pair_at(int m, float q, float diagonal, vec2 turn) {
   return ShPair(m, m, q * turn.x, q * turn.y, q, 0, diagonal, turn);
 }
 ShPair first_pair(vec3 direction) { return pair_at(0, 0.282094791773878, 0.0795774715459477, vec2(1, 0)); }
-// Of the bands below `order` alone.
+// Steps through the bands below `order`.
 void next_pair(inout ShPair y, vec3 direction, int order) {
   float l = float(++y.l), m = float(y.m);
   if (y.l < order) {

@@ -178,7 +178,7 @@ void PreparedPaperGpu::find_programs() {
 
 std::optional<std::vector<scene::StageTime>> PreparedPaperGpu::next(std::shared_ptr<const Scene> scene,
                                                                     const Execution&) {
-  // Of a scene without media variant `ray` draws what can be seen.
+  // Variant `ray` draws what a scene without media shows.
   if (!LegendreLight().supports(*scene, given_).empty() ||
       (ends_rays(*scene) && !airlight::legendre_fluids::paper_medium(*scene).density))
     return std::nullopt;

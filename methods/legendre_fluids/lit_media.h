@@ -13,7 +13,7 @@ struct LitMedium {
   const scene::Medium* medium;
   scene::LegendrePointer field;               // within the medium's region; homogeneous ones are of one coefficient
   std::optional<double> negative_share = {};  // of its box, where the density is below 0; nothing: not asked for yet
-  // Of each light, once they are found; right to `rounding` [m].
+  // One for each light, once they are found; right to `rounding` [m].
   std::vector<std::shared_ptr<const LightColumns>> columns = {};
   double rounding = 0;
 };
