@@ -2,6 +2,7 @@
 // could take another file's copy of it.
 #include "experiments/application/processor_check.h"
 
+#include <stdio.h>
 #include <string.h>
 #include <sys/platform/x86.h>
 #include <unistd.h>
@@ -25,9 +26,11 @@ __attribute__((constructor(101))) static void check_processor() {
       {"LZCNT", bool(CPU_FEATURE_ACTIVE(LZCNT))}, {"MOVBE", bool(CPU_FEATURE_ACTIVE(MOVBE))}};
   const char* missing = airlight::missing_feature(x86_64_v3, int(sizeof x86_64_v3 / sizeof *x86_64_v3));
   if (!missing) return;
-  char line[200] = "airlight: this processor lacks ";
-  strcat(line, missing);
-  strcat(line, ": expected one of level x86-64-v3 (Intel since Haswell, AMD since Excavator)\n");
+  char line[200];
+  snprintf(line, sizeof line,
+           "airlight: this processor lacks %s: expected one of level x86-64-v3 (Intel since Haswell, AMD since "
+           "Excavator)\n",
+           missing);
   const ssize_t lost = write(2, line, strlen(line));
   (void)lost;
   _exit(3);

@@ -175,7 +175,7 @@ void place_edges(double lo, double hi, const std::vector<LightFromRay>& lights, 
   }
   const double parts = 1.0 + !lights.empty() + (opacity > 0);
   for (AngleShare& light : s.lights) light.weight /= parts * double(lights.size());
-  if (opacity > 0) HWY_DYNAMIC_DISPATCH(BoxShares)
+  if (boxes && opacity > 0) HWY_DYNAMIC_DISPATCH(BoxShares)
   (s.node.data(), count, s, boxes->count, 1 / (parts * opacity), s.share.data());
   HWY_DYNAMIC_DISPATCH(AddShares)
   (s.node.data(), count, lo, 1 / ((hi - lo) * parts), s.lights.data(), s.lights.size(), s.share.data());

@@ -66,7 +66,7 @@ void ClipBox(const float* lo, const float* hi, int axes, std::size_t n, const Lo
   const float* const d[3] = {rays.dx, rays.dy, rays.dz};
   for (std::size_t i = 0; i < n; i += hn::Lanes(f)) {
     VF t0 = hn::LoadU(f, rays.t0 + i), t1 = hn::LoadU(f, rays.t1 + i);
-    for (int k = 0; k < axes; ++k)
+    for (int k = 0; k < axes; ++k)  // 1 or 3; NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult)
       clip_slab(hn::LoadU(f, o[k] + i), hn::LoadU(f, d[k] + i), hn::Set(f, lo[k]), hn::Set(f, hi[k]), t0, t1);
     hn::StoreU(t0, f, rays.t0 + i);
     hn::StoreU(t1, f, rays.t1 + i);
