@@ -3,6 +3,7 @@
 #include "gpu/legendre_fluids/light.h"
 #include "tests/gpu/device.h"
 #include "tests/methods/legendre_fluids/next_frames.h"
+#include "tests/refused_frame.h"
 
 namespace legendre_gpu_next_frame_test {
 
@@ -93,13 +94,7 @@ DEVICE_TEST_CASE("legendre fluids on the device: the paper's systems of the next
 DEVICE_TEST_CASE("legendre fluids on the device: a preparation stays as it is where the next scene is refused",
                  "[gpu][legendre_fluids]") {
   const auto still = lit_scene(smoke(random_density({3, 3, 3}, 3), 1), oblique_light, oblique_view, 8, 6);
-  const auto prepared = method.prepare(still, {method.settings(), {}}, {1, {}});
-  const scene::Film first = prepared->render(view_of(*still), {1, {}}).film;
-  auto other = std::make_shared<Scene>(*still);
-  other->lights[0] = scene::PointLight{};
-  finish(*other);
-  CHECK_FALSE(prepared->next(other, {1, {}}));
-  CHECK(prepared->render(view_of(*still), {1, {}}).film.layers == first.layers);
+  test::check_refused_frame(method, still, scene::PointLight{});
 }
 
 }  // namespace legendre_gpu_next_frame_test

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "tests/methods/fogshop/next_frames.h"
+#include "tests/refused_frame.h"
 
 namespace fogshop_next_frame_test {
 
@@ -54,13 +55,7 @@ TEST_CASE("fogshop: the next frame is the frame made anew, and makes what change
 
 TEST_CASE("fogshop: a preparation stays as it is where the next scene is refused", "[fogshop]") {
   const auto still = std::make_shared<const Scene>(garden());
-  const auto prepared = method.prepare(still, {method.settings(), {}}, {1, {}});
-  const scene::Film first = prepared->render(view_of(*still), {1, {}}).film;
-  auto other = std::make_shared<Scene>(*still);
-  other->lights[0] = scene::DirectionalLight{};
-  finish(*other);
-  CHECK_FALSE(prepared->next(other, {1, {}}));
-  CHECK(prepared->render(view_of(*still), {1, {}}).film.layers == first.layers);
+  test::check_refused_frame(method, still, scene::DirectionalLight{});
 }
 
 }  // namespace fogshop_next_frame_test

@@ -4,6 +4,7 @@
 
 #include "methods/legendre_fluids/light.h"
 #include "tests/methods/legendre_fluids/next_frames.h"
+#include "tests/refused_frame.h"
 
 namespace legendre_next_frame_test {
 
@@ -71,13 +72,7 @@ TEST_CASE("legendre fluids: the paper's systems of the next frame are solved whe
 
 TEST_CASE("legendre fluids: a preparation stays as it is where the next scene is refused", "[legendre_fluids]") {
   const auto still = std::make_shared<const Scene>(smoke_over_floor());
-  const auto prepared = method.prepare(still, {method.settings(), given}, {1, {}});
-  const scene::Film first = prepared->render(view_of(*still), {1, {}}).film;
-  auto other = std::make_shared<Scene>(*still);
-  other->lights[0] = scene::PointLight{};
-  finish(*other);
-  CHECK_FALSE(prepared->next(other, {1, {}}));
-  CHECK(prepared->render(view_of(*still), {1, {}}).film.layers == first.layers);
+  test::check_refused_frame(method, still, scene::PointLight{}, given);
 }
 
 }  // namespace legendre_next_frame_test
