@@ -71,7 +71,8 @@ and writes this page.
 - **Reference.** The first panel of a row is the reference, where there is one. A path-traced reference keeps some noise; the table says
   how much (root mean square, relative to the picture).
 - **Error.** The number over a panel is its relative L2 error against the reference. Noise of the reference is subtracted. Errors can be
-  larger than in the tables of the papers: larger films have more pixels close to a light.
+  larger than in the tables of the papers: larger films have more pixels close to a light. They can be smaller, too: pictures show the
+  room or the sky behind smoke, and tables may judge the scattered light alone, or under another light.
 - **Error map.** The map below a panel shows the difference in luminance from the reference, divided by the mean luminance of the reference.
   Dark violet is no error. All maps of a picture have one scale, which stands below the reference. Grain in a map is noise of the reference.
 - **Time.** Time of one frame from nothing: the method prepares everything and renders; reading the scene does not count. It is the
