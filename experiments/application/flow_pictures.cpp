@@ -40,8 +40,13 @@ FlowPictures::FlowPictures(const scene::Scene& scene, const scene::Renderer& ren
   require_smoke(scene);
 }
 
-std::unique_ptr<scene::Prepared> FlowPictures::prepared_with(const scene::DensityField& field) const {
-  return renderer_.prepare(scene_with_smoke(scene_, field), settings_, execution_);
+void FlowPictures::prepare(const scene::DensityField& field) {
+  const auto scene = scene_with_smoke(scene_, field);
+  if (prepared_) {
+    renderer_.require_support(*scene, settings_);
+    if (prepared_->next(scene, execution_)) return;
+  }
+  prepared_ = renderer_.prepare(scene, settings_, execution_);
 }
 
 void FlowPictures::draw(const scene::Flow& flow, const std::string& png) {
@@ -50,20 +55,20 @@ void FlowPictures::draw(const scene::Flow& flow, const std::string& png) {
   if (const auto there = gpu::legendre_fluids::density_on_device(flow);
       there && !prepared_ && renderer_.name() == drawn_there) {
     const int n = there->coefficients;
-    prepared_ = prepared_with(std::make_shared<const scene::LegendreBox>(there->box, scene::TensorShape{n, n, n},
-                                                                         Eigen::VectorXd::Unit(n * n * n, 0)));
+    prepare(std::make_shared<const scene::LegendreBox>(there->box, scene::TensorShape{n, n, n},
+                                                       Eigen::VectorXd::Unit(n * n * n, 0)));
   }
   if (prepared_ && gpu::legendre_fluids::draw_flow(*prepared_, flow))
     ++on_device_;
   else
-    prepared_ = prepared_with(flow.medium());
+    prepare(flow.medium());
   write(png);
   seconds_ += watch.lap();
 }
 
 void FlowPictures::draw(const scene::DensityField& density, const std::string& png) {
   scene::Stopwatch watch;
-  prepared_ = prepared_with(density);
+  prepare(density);
   write(png);
   seconds_ += watch.lap();
 }

@@ -224,7 +224,7 @@ DEVICE_TEST_CASE("legendre fluids on the device: a density below 0 is drawn towa
       *method.prepare(scene_with(random_density({4, 4, 4}, 1)), {method.settings(), {}}, {1, {}}), *flow));
 }
 
-DEVICE_TEST_CASE("pictures of a flow: from where it lies, and prepared anew each time", "[gpu][legendre_fluids]") {
+DEVICE_TEST_CASE("pictures of a flow: from where it lies, and from a box that is uploaded", "[gpu][legendre_fluids]") {
   const TemporaryFolder folder;
   const auto flow = rising_blob(0.5);
   const auto scene = scene_with(box_of(*flow, 1));
@@ -245,6 +245,9 @@ DEVICE_TEST_CASE("pictures of a flow: from where it lies, and prepared anew each
     }
     CHECK(worst < 0.01);  // a level of 8 bits
     CHECK(greatest > 0.1);
+    // The second picture keeps what the first one prepared. A picture that is prepared anew is equal to it.
+    experiments::FlowPictures(*scene, on_processor, settings, 3, 1).draw(*flow, folder.file("anew.png"));
+    CHECK(scene::read_color_image(folder.file("anew.png")).rgb == b.rgb);
     flow->step(0.05);
   }
   CHECK(there.on_device() == 2);
