@@ -163,7 +163,9 @@ class Gallery(Tree):
         self.assertEqual(gallery.main([]), 0)
         self.assertIn(reference + row.format("ours", "fast", "K = 4", "25 %", "500 ms *"), self.read("results/gallery/README.md"))
         self.assertEqual(gallery.main(["--times"]), 0)
-        self.assertEqual(len(self.renders()), 6)  # three of the second panel
+        self.assertEqual(len(self.renders()), 7)  # one of the second panel, which is short, and then three
+        self.assertEqual(gallery.main(["--times"]), 0)
+        self.assertEqual(len(self.renders()), 7)  # both have their times
         page = self.read("results/gallery/README.md")
         self.assertIn(row.format("ours", "fast", "K = 4", "25 %", "500 ms"), page)
         self.assertIn("Film: 960x4 pixels, each pixel of a panel (480x2) is the mean of 2x2. Processor: A Processor, 2 threads.", page)
@@ -177,6 +179,8 @@ class Gallery(Tree):
         self.assertFalse(gallery.disturbed((1, 10, 100), (3, 12.1, 102)))  # others used 0.1 s of 2 s
         self.assertTrue(gallery.disturbed((1, 10, 100), (2, 12, 102)))
         gallery.disturbed = lambda before, after: True
+        self.assertEqual(gallery.main(["--times"]), 2)  # there is no picture yet
+        self.assertEqual(gallery.main([]), 0)
         self.assertEqual(gallery.main(["--times"]), 0)
         self.assertIn("| ours | fast | once | K = 3 | 25 % |  |\n", self.read("results/gallery/README.md"))
 
