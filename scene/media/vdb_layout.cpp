@@ -121,7 +121,7 @@ class TreeWalk {
 
   void values(const char* active, std::size_t slots) {
     // How inactive slots are told: by up to two values, by a mask that selects between two, or all are stored (6).
-    const int kind = walk_.number<std::int8_t>();
+    const std::int8_t kind = walk_.number<std::int8_t>();
     if (kind < 0 || kind > 6) damaged(walk_.at(), "unknown coding of inactive voxels");
     if (kind == 2 || kind == 4 || kind == 5) walk_.take(sample_);
     if (kind == 5) walk_.take(sample_);

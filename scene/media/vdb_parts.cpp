@@ -130,7 +130,7 @@ void set_transform(VoxelGrid& grid, const openvdb::math::Transform& transform, c
     return;
   }
   const Eigen::JacobiSVD<Mat3> svd(linear, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Vec3 scale = svd.singularValues();
+  const Vec3& scale = svd.singularValues();
   // Exporters compute in float: 1e-6 is their rounding.
   if (!(scale[2] > 0) || scale[0] - scale[2] > 1e-6 * scale[0])
     fail(where, fmt::format("its voxels measure {} x {} x {}, expected a uniform scale", scale[0], scale[1], scale[2]));
@@ -244,7 +244,7 @@ openvdb::GridBase::Ptr open_grid(const std::string& path, const std::string& nam
     const VdbEntry& entry = find_entry(entries, name);
     subject = where;
     check_entry(file, entry, type);
-    const openvdb::GridBase::Ptr grid = Reader().read(stream, entry);
+    openvdb::GridBase::Ptr grid = Reader().read(stream, entry);
     if (entry.parent.empty()) return grid;
     // Another grid's samples, with a place and notes of its own.
     const auto parent = std::find_if(entries.begin(), entries.end(), [&](const VdbEntry& e) {
