@@ -92,12 +92,10 @@ class Comparison {
     constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
     const Difference difference{
         ours.scene, ours.method, ours.setting, metric, a ? a->value : undefined, b ? b->value : undefined};
-    if (!a || !b) {
-      result_.differ.push_back(difference);
-    } else if (a->low < a->high || b->low < b->high) {
+    if (a && b && (a->low < a->high || b->low < b->high)) {
       ++result_.noisy;
       if (a->low > b->high || b->low > a->high) result_.apart.push_back(difference);
-    } else if (!same(a->value, b->value)) {
+    } else if (!a || !b || !same(a->value, b->value)) {
       result_.differ.push_back(difference);
     }
   }

@@ -43,7 +43,7 @@ std::vector<std::string> experiment_ids(const fs::path& root) {
 }
 
 std::vector<std::string> choose_experiments(const fs::path& root, const std::vector<std::string>& names) {
-  const auto all = experiment_ids(root);
+  auto all = experiment_ids(root);
   if (names.empty()) return all;
   std::vector<std::string> chosen;
   for (const std::string& name : names) {

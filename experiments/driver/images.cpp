@@ -165,7 +165,7 @@ MadeRow make_row(const RowKeeper& keeper, std::shared_ptr<const Judged> judged, 
 
 // A column of a counter that only some rows have.
 RowColumn counter(const std::string& head, const std::string& name, std::function<std::string(double)> as_text) {
-  return {head, [name, as_text](const Row& row) {
+  return {head, [name, as_text = std::move(as_text)](const Row& row) {
             const auto found = row.counters.find(name);
             return found == row.counters.end() ? "" : as_text(found->second);
           }};

@@ -1,7 +1,7 @@
 // Media as polynomials in boxes, MEDIA of them: densities, and columns towards a directional light. Coefficients are those of Legendre
 // polynomials P without a norm, [x][y][z], NX x NY x 4 FOURS_Z for every medium. With NEGATIVE a density below 0 is taken as 0.
 layout(std140, binding = AT_DENSITIES) uniform Densities { vec4 densities[MEDIA * NX * NY * FOURS_Z]; };
-layout(std140, binding = AT_RULE) uniform Rule { vec4 rule[RULE]; };  // light_rule.h
+layout(std140, binding = AT_RULE) uniform Rule { vec4 rule[RULE]; };  // Rule of lit_media.cpp
 uniform dvec3 box_middle[MEDIA], per_half[MEDIA];                    // [m], [1/m]
 uniform vec3 sigma_t[MEDIA], scattering[MEDIA];                      // [1/m]
 uniform dvec3 to_light;
@@ -54,7 +54,7 @@ float density_noise(int medium) {
 }
 
 #if NEGATIVE
-#include "legendre_fluids/sign_changes.glsl"
+#include "common/sign_changes.glsl"
 #endif
 
 // A ray in a medium's own coordinates.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gpu/line_series.h"
 #include "scene/math/gauss_legendre.h"
 
 namespace airlight::gpu::legendre_fluids {
@@ -50,13 +51,9 @@ class Rule {
  public:
   Rule(const LitMedia& media, const airlight::legendre_fluids::RayOptions& options, Definitions& definitions)
       : definitions_(definitions) {
-    const int n = media.coefficients;
-    const scene::LegendrePoints& series = scene::legendre_points(n);
-    begin("NODES");
-    add(series.node);
-    begin("ANALYSIS");
-    for (int q = 0; q < n; ++q)
-      add((series.analysis.col(q).array() * (Eigen::ArrayXd::LinSpaced(n, 0, n - 1) + 0.5).sqrt()).matrix());
+    LineSeries line = line_series(media.coefficients);
+    values = std::move(line.values);
+    definitions_.merge(line.definitions);
     begin("WAY");
     const TensorShape shape = shape_of(media);
     const scene::GaussLegendre way = scene::gauss_legendre((shape[0] + shape[1] + shape[2] - 3) / 2 + 1);
@@ -70,7 +67,6 @@ class Rule {
         node[Eigen::Index(c - b)] = panel.node[c], weight[Eigen::Index(c - b)] = panel.weight[c];
       add(node), add(weight);
     }
-    definitions_["SERIES"] = std::to_string(n);
     definitions_["WAY_POINTS"] = std::to_string(way.node.size());
     definitions_["PANEL_FOURS"] = std::to_string(fours(options.points));
     definitions_["RULE"] = std::to_string(values.size() / 4);

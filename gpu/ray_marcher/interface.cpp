@@ -9,6 +9,7 @@ namespace airlight::gpu::ray_marcher {
 namespace {
 
 const std::vector<Binding> bindings = {{"LAYERS", at::layers},
+                                       {"LINE_RULE", at::line_rule},
                                        {"LIGHT_MAPS", at::light_maps},
                                        {"GAUSSIANS", at::gaussians},
                                        {"GRID_VALUES", at::grid_values},

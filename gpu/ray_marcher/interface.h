@@ -8,11 +8,12 @@
 namespace airlight::gpu::ray_marcher {
 
 // Storage blocks, AT_... in shaders. gpu/raster has 10 to 12 and 14 (surfaces, the tree), gpu/common 9
-// (values of an environment). Blocks that no shader uses together share a number. `layers` is a uniform
-// block, beside a storage block 0.
+// (values of an environment). Blocks that no shader uses together share a number. `layers` and
+// `line_rule` are uniform blocks, beside storage blocks 0 and 1.
 namespace at {
 enum Binding {
   layers = 0,
+  line_rule = 1,   // uniform
   light_maps = 0,  // storage
   gaussians = 1,
   grid_values = 2,

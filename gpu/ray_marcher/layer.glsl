@@ -38,7 +38,7 @@ struct Gaussian {
 };
 
 layout(std140, binding = AT_LAYERS) uniform Layers { Layer layers[LAYERS > 0 ? LAYERS : 1]; };
-#if SERIES  // maps and series stand in one list with the Gaussians, which are its beginning
+#if OTHER_FIELDS  // maps and series stand in one list with the Gaussians, which are its beginning
 layout(std430, binding = AT_GAUSSIANS) readonly buffer FieldValues { float field_value[]; };
 Gaussian gaussian_at(int i) {
   int at = 8 * i;
@@ -160,8 +160,8 @@ float gaussian_density(int k, vec3 p) {
 }
 #endif
 
-#if SERIES
-const int map_rows = 6, profile_none = 0, profile_layers = 1;
+#if OTHER_FIELDS
+const int map_rows = 6, profile_none = 0, profile_layers = 1, profile_exponential = 2;
 
 // The factor of the height, by the knots of the map's profile: scene/media/height_profile.h.
 float height_factor(int k, float y) {
@@ -187,11 +187,15 @@ vec4 cell_basis(int degree, float u) {
 
 // A fogmap (scene/media/fogmap.h). First come two rows that lead from local coordinates to cells, then the knots, then the
 // coefficients with a border of zeros.
+vec2 place_on_map(int k, vec3 p) {
+  int at = layers[k].first;
+  vec3 ground = vec3(p.xz, 1);
+  return vec2(dot(vec3(field_value[at], field_value[at + 1], field_value[at + 2]), ground),
+              dot(vec3(field_value[at + 3], field_value[at + 4], field_value[at + 5]), ground));
+}
 float map_density(int k, vec3 p) {
   int at = layers[k].first, degree = layers[k].bricks.x, columns = layers[k].size.x;
-  vec3 ground = vec3(p.xz, 1);
-  vec2 uv = vec2(dot(vec3(field_value[at], field_value[at + 1], field_value[at + 2]), ground),
-                 dot(vec3(field_value[at + 3], field_value[at + 4], field_value[at + 5]), ground));
+  vec2 uv = place_on_map(k, p);
   vec2 cell = floor(uv), last = vec2(layers[k].size.xy - degree);
   work += 8u;
   if (any(lessThan(uv, vec2(0))) || any(greaterThanEqual(uv, last))) return 0;
@@ -205,11 +209,13 @@ float map_density(int k, vec3 p) {
 
 // A Legendre box (scene/media/legendre_box.h). First come factors from local coordinates to [-1, 1], then the coefficients of
 // Legendre polynomials that are 1 at the end, z fastest. Sums by Clenshaw's recurrence along each axis.
-float series_density(int k, vec3 p) {
+vec3 series_scale(int k) {
+  int at = layers[k].first;
+  return vec3(field_value[at], field_value[at + 1], field_value[at + 2]);
+}
+float series_value(int k, vec3 u) {  // of [-1, 1]^3, negative ones too
   int at = layers[k].first;
   ivec3 n = layers[k].size;
-  vec3 u = p * vec3(field_value[at], field_value[at + 1], field_value[at + 2]);
-  if (any(greaterThan(abs(u), vec3(1)))) return 0;
   work += uint(n.x * n.y * n.z);
   vec2 sum = vec2(0);  // of the order in hand and the one above it
   for (int x = n.x - 1; x >= 0; --x) {
@@ -227,7 +233,12 @@ float series_density(int k, vec3 p) {
     float m = float(x);
     sum = vec2(plane.x + (2 * m + 1) / (m + 1) * u.x * sum.x - (m + 1) / (m + 2) * sum.y, sum.x);
   }
-  return max(sum.x, 0);
+  return sum.x;
+}
+float series_density(int k, vec3 p) {
+  vec3 u = p * series_scale(k);
+  if (any(greaterThan(abs(u), vec3(1)))) return 0;
+  return max(series_value(k, u), 0);
 }
 #endif
 
@@ -239,7 +250,7 @@ float local_density(int k, vec3 p) {
 #if GAUSSIANS
   if (layers[k].field == field_gaussians) return gaussian_density(k, p);
 #endif
-#if SERIES
+#if OTHER_FIELDS
   if (layers[k].field == field_map) return map_density(k, p);
   if (layers[k].field == field_series) return series_density(k, p);
 #endif

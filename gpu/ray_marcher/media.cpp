@@ -81,7 +81,7 @@ std::map<std::string, std::string> MediaOnDevice::definitions() const {
           {"GRIDS", has_grids_ ? "1" : "0"},
           {"TEXTURES", std::to_string(grids_.textures())},
           {"GAUSSIANS", has_gaussians_ ? "1" : "0"},
-          {"SERIES", series_.empty() ? "0" : "1"}};
+          {"OTHER_FIELDS", series_.empty() ? "0" : "1"}};
 }
 
 void MediaOnDevice::bind(LinkedProgram& program) const {

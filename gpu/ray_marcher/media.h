@@ -23,7 +23,7 @@ class MediaOnDevice {
 
   const Point3& middle() const { return middle_; }
   const GridsOnDevice& grids() const { return grids_; }
-  // LAYERS, GRIDS, TEXTURES, GAUSSIANS and SERIES, for a program that includes layer.glsl.
+  // LAYERS, GRIDS, TEXTURES, GAUSSIANS and OTHER_FIELDS (fogmaps, Legendre boxes), for a program that includes layer.glsl.
   std::map<std::string, std::string> definitions() const;
   // Binds uniform block 0, storage blocks 1 to 3 and the textures, sets layer_count.
   void bind(LinkedProgram&) const;

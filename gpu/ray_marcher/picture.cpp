@@ -37,7 +37,7 @@ Picture::Picture(Context& context, const scene::Scene& scene, const MediaOnDevic
     auto reflecting = definitions;
     reflecting.merge(columns.definitions());
     // Columns alone ask for densities.
-    if (reflecting.at("DEPTHS") != "1")
+    if (columns.depths() == Columns::Depths::none || columns.depths() == Columns::Depths::maps)
       for (const char* field : {"GRIDS", "TEXTURES", "GAUSSIANS"}) reflecting[field] = "0";
     surfaces_ = &program(context, "ray_marcher/surfaces.comp", reflecting);
     if (const Box box = scene.geometry->bounds(); !box.empty())

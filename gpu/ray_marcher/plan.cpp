@@ -10,11 +10,34 @@
 #include "gpu/view_uniforms.h"
 #include "reference/ray_marcher/light_maps.h"
 #include "scene/base/error.h"
+#include "scene/media/fogmap.h"
+#include "scene/media/legendre_box.h"
 
 namespace airlight::gpu::ray_marcher {
 namespace {
 
 constexpr double software_most = 65535;
+
+// Iterations of exact_columns.glsl for a ray.
+double iterations_without_steps(const airlight::ray_marcher::Layer& layer) {
+  const double at_place = density_iterations(layer);
+  if (layer.grid) return layer.grid->size[0] + layer.grid->size[1] + layer.grid->size[2];
+  if (layer.gaussians) {
+    if (!layer.gaussians->any_negative) return at_place;
+    // Two looks at each place, and 12 at a change of sign, of which each Gaussian makes two at most.
+    const std::vector<float>& rates = layer.gaussians->inverse_width;
+    const double places = bounding_box(layer.varied).size().norm() * 4 * *std::max_element(rates.begin(), rates.end());
+    return at_place * (2 * places + 13 * std::min(places, 2 * at_place));
+  }
+  if (const auto* fog = std::get_if<scene::FogmapPointer>(&layer.medium->field)) {
+    const scene::IndexRange& cells = (*fog)->map.range();
+    const double knots = double(height_breaks((*fog)->profile).size()), halves_of_fall = 48;
+    return (cells.size[0] + cells.size[1] + knots + halves_of_fall) * (4 * at_place + knots);
+  }
+  const scene::TensorShape& n = std::get<scene::LegendrePointer>(layer.medium->field)->shape();
+  const double points = n[0] + n[1] + n[2] - 2;
+  return points * (at_place + points * 32);  // a scan of 4 * points places, and 20 looks at each change of sign
+}
 
 // Iterations of loops between two places where a march may stop and go on later: one light at one step.
 double iterations_at_once(const airlight::ray_marcher::Plan& plan) {
@@ -29,14 +52,14 @@ double iterations_at_once(const airlight::ray_marcher::Plan& plan) {
     // back up.
     if (!exact && layer.most_varied * layer.thickest * across / steps > deepest_shadow_step(o))
       sum += 4 * 20 / deepest_shadow_step(o) * (layer.grid ? 1 : 3 * density_iterations(layer));
-    if (exact && layer.grid)
-      sum += layer.grid->size[0] + layer.grid->size[1] + layer.grid->size[2];
+    if (exact)
+      sum += iterations_without_steps(layer);
     else if (!layer.gaussians)
       sum += steps * density_iterations(layer);
     else if (layer.gaussians->any_negative)
       sum += steps * double(layer.gaussians->count);
     else
-      sum += double(layer.gaussians->count) * (exact ? 1 : 1 + steps / 4);
+      sum += double(layer.gaussians->count) * (1 + steps / 4);
   }
   return sum;
 }
@@ -46,7 +69,9 @@ int count_balls(const std::vector<scene::Light>& lights) {
 }
 
 Columns::Depths depths_of(const airlight::ray_marcher::Plan& plan) {
-  return needs_maps(plan) ? Columns::Depths::maps : Columns::Depths::columns;
+  if (needs_maps(plan)) return Columns::Depths::maps;
+  const bool exact = plan.options.shadow == airlight::ray_marcher::Shadow::exact;
+  return exact ? Columns::Depths::exact : Columns::Depths::columns;
 }
 
 }  // namespace
@@ -78,9 +103,10 @@ PlanOnDevice::PlanOnDevice(Context& context, const airlight::ray_marcher::Plan& 
 
 void PlanOnDevice::check_iterations() const {
   if (context_.software() && iterations_at_once(plan_) > software_most)
-    throw Unavailable(
-        fmt::format("gpu: a shadow ray may take {:.0f} iterations, {} stops after {:.0f}; expected fewer shadow steps",
-                    iterations_at_once(plan_), context_.renderer(), software_most));
+    throw Unavailable(fmt::format(
+        "gpu: a shadow ray may take {:.0f} iterations, {} stops after {:.0f}; expected {}", iterations_at_once(plan_),
+        context_.renderer(), software_most,
+        plan_.options.shadow == airlight::ray_marcher::Shadow::exact ? "shadow = march" : "fewer shadow steps"));
 }
 
 bool PlanOnDevice::is_like(const airlight::ray_marcher::Plan& next) const {

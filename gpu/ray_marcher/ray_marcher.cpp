@@ -157,18 +157,6 @@ std::vector<std::string> RayMarcher::supports(const Scene& scene, const scene::S
   for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
   const airlight::ray_marcher::Options options = airlight::ray_marcher::read_options(settings, 1);
   if (!options.simd) reasons.push_back("kernel = scalar is for the CPU: shaders compute in single precision");
-  std::string marched;
-  for (const scene::Medium& medium : scene.media)
-    scene::match(
-        medium.field, [](const scene::Homogeneous&) {},
-        [&](const scene::GaussianSum& sum) {
-          for (const scene::Gaussian& g : sum.gaussians)
-            if (g.amplitude < 0) marched = "Gaussians with negative amplitudes";
-        },
-        [](const scene::GridPointer&) {}, [&](const scene::FogmapPointer&) { marched = "fogmaps"; },
-        [&](const scene::LegendrePointer&) { marched = "Legendre boxes"; }, [](const scene::FittedPointer&) {});
-  if (options.shadow == airlight::ray_marcher::Shadow::exact && !marched.empty())
-    reasons.push_back("shadow = exact: shaders march the depths of " + marched);
   return reasons;
 }
 

@@ -128,13 +128,30 @@ DEVICE_TEST_CASE("ray marcher: 32 media on the GPU", "[gpu][ray_marcher]") {
 
 DEVICE_TEST_CASE("ray marcher: exact shadows of Gaussians and grids on the GPU", "[gpu][ray_marcher]") {
   for (const auto& [name, scene] : assorted_scenes()) {
-    if (name != "Gaussians" && name.find("grid") == std::string::npos) continue;
+    if (name.find("Gaussians") == std::string::npos && name.find("grid") == std::string::npos) continue;
     CAPTURE(name);
     const Given given{{"shadow", "exact"}};
     const scene::Rendering cpu = render(scene, look(), given, 1), gpu = render_gpu(scene, look(), given);
     // Measured for grids: 3.4e-6. The CPU integrates in double precision.
     CHECK(p99(cpu.film, gpu.film, "airlight") < (name == "Gaussians" ? 1.7e-6 : 7e-6));
     CHECK(gpu.counters.at("shadow_steps") == 0);
+  }
+}
+
+// Many holes, which meet and leave thin bridges. Widths differ by a factor of ten.
+DEVICE_TEST_CASE("ray marcher: exact shadows of negative Gaussians on the GPU", "[gpu][ray_marcher]") {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (const double constant : {0.0, 0.05}) {
+    scene::GaussianSum sum{{}, constant, infinity};
+    for (int i = 0; i < 24; ++i)
+      sum.gaussians.push_back({Point3(2 * uniform(random) - 1, 2 * uniform(random) - 1, 2 * uniform(random) - 1),
+                               0.1 * std::pow(10, uniform(random)), i % 2 ? 0.5 + uniform(random) : -uniform(random)});
+    const auto scene = make_scene({make_medium(sum, Box{{-2, -2, -2}, {2, 2, 2}}, Rgb(1.5, 2, 3), Rgb::Constant(0.9))},
+                                  {scene::PointLight{{Point3(1.5, 2, 1)}, Rgb(5, 4, 3)}});
+    const Given given{{"steps", "24"}, {"shadow", "exact"}};
+    const scene::Rendering cpu = render(scene, look(), given, 1), gpu = render_gpu(scene, look(), given);
+    gpu::test::agree("negative Gaussians", cpu.film, gpu.film, {7e-6, 7e-6}, {"airlight"});
   }
 }
 
@@ -254,7 +271,7 @@ TEST_CASE("ray marcher: what the GPU does not do is said; a render can be stoppe
   CHECK(objections("grid", {}) == 0);
   CHECK(objections("grid", {{"shadow", "exact"}}) == 0);
   CHECK(objections("Gaussians", {{"shadow", "exact"}}) == 0);
-  CHECK(objections("Gaussians with a hole, cut off, over a constant, in a sphere", {{"shadow", "exact"}}) == 1);
+  CHECK(objections("Gaussians with a hole, cut off, over a constant, in a sphere", {{"shadow", "exact"}}) == 0);
   CHECK(objections("Gaussians", {{"kernel", "scalar"}}) == 1);
   CHECK(objections("Gaussians", {{"shadow", "map"}}) == 0);
   if (!gpu::test::device()) return;

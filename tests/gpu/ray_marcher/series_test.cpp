@@ -116,11 +116,17 @@ DEVICE_TEST_CASE("froxels: a next frame with another fogmap is the frame made an
   }
 }
 
-DEVICE_TEST_CASE("ray marcher: shaders march depths of fogmaps", "[gpu][ray_marcher]") {
-  const gpu::ray_marcher::RayMarcher method;
-  const auto reasons = method.supports(*map_of(1, profiles[0], false), {method.settings(), {{"shadow", "exact"}}});
-  REQUIRE(reasons.size() == 1);
-  CHECK(reasons.front() == "shadow = exact: shaders march the depths of fogmaps");
+// Every degree with every profile. The box is negative in places.
+DEVICE_TEST_CASE("ray marcher: exact shadows of fogmaps and Legendre boxes on the device", "[gpu][ray_marcher]") {
+  const Given exact{{"steps", "24"}, {"shadow", "exact"}};
+  const ray_marcher::RayMarcher marcher;
+  const gpu::ray_marcher::RayMarcher gpu_marcher;
+  for (int degree = 0; degree <= 3; ++degree)
+    for (int p = 0; p < 3; ++p)
+      agree(marcher, gpu_marcher, map_of(degree, profiles[p], p == 1), exact,
+            fmt::format("exact, degree {}, profile {}", degree, p), degree == 0 ? 0.8 : 0.99);
+  for (const bool beside : {false, true})
+    agree(marcher, gpu_marcher, box_of(beside), exact, beside ? "exact, box beside Gaussians" : "exact, box");
 }
 
 }  // namespace series_test

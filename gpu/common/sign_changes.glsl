@@ -1,5 +1,6 @@
 // Densities on lines as polynomials on [-1, 1], by their series of P, and where they are positive: scene/media/legendre_line.h, by a scan
-// that also looks where a dip begins and ends between two of its places.
+// that also looks where a dip begins and ends between two of its places. Includers define `rule` (gpu/line_series.h), SERIES_FOURS and
+// density_at().
 #define PIECES (4 * SERIES)
 
 // Along middle + z slope, exactly.
