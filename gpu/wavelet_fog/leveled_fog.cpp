@@ -92,6 +92,7 @@ FogOnDevice::FogOnDevice(Context& context, const scene::Medium& medium, const Op
   write(medium);
   grids_.upload(fogmap(medium).map.coefficients());
   Definitions all = definitions();
+  if (options_.table > 0) add_table(all);
   camera_rays_ = &program(context_, "columns", pixel_tile, pixel_tile, all);
   if (options_.variant == Variant::polar) {
     Definitions steps = all;
@@ -374,6 +375,7 @@ void FogOnDevice::add_depths(const scene::View& view, const Buffer* distances, c
                              const Buffer& counters, bool first, bool counts) {
   Program& p = *camera_rays_;
   bind();
+  if (path_table_) path_table_->bind(at::table);
   (distances ? *distances : depths).bind(at::distances);
   depths.bind(at::depths);
   counters.bind(at::counters);
@@ -403,6 +405,7 @@ void FogOnDevice::add_depths(const scene::View& view, const Buffer* distances, c
 void FogOnDevice::dim(const scene::View& view, const Buffer& lit) {
   Program& p = *light_rays_;
   bind();
+  if (path_table_) path_table_->bind(at::table);
   lit.bind(at::lit);
   set_view(p, view);
   p.set("parts", parts_);

@@ -51,6 +51,7 @@ class FogOnDevice {
  private:
   void add_grids();
   void add_wavelets(Definitions&) const;
+  void add_table(Definitions&);
   void add_bands(const std::vector<int>& grids);
   void add_blocks(bool errors);
   void add_errors(const std::vector<scene::IndexRange>& blocks);
@@ -67,7 +68,7 @@ class FogOnDevice {
   Grids grids_;
   FogData data_{};
   std::vector<double> knots_;  // heights and factors, alternating
-  std::unique_ptr<Buffer> fog_, emptiness_;
+  std::unique_ptr<Buffer> fog_, emptiness_, path_table_;
   Program *camera_rays_ = nullptr, *light_rays_ = nullptr, *table_steps_ = nullptr,
           *table_sums_ = nullptr;  // null: not needed
   struct Table {

@@ -14,8 +14,16 @@
 #endif
 #if VARIANT == VARIANT_PRE
 #include "wavelet_fog/wavelet_cell.glsl"
+#else
+const int wavelets = -1;
 #endif
-#if VARIANT == VARIANT_BOUND  // a walk that begins anew may find the cell empty in a block that it would have taken as a whole
+#ifndef TABLE
+#define TABLE 0
+#endif
+#if TABLE > 0
+#include "wavelet_fog/path_table.glsl"
+#endif
+#if VARIANT == VARIANT_BOUND || TABLE > 0  // a walk that begins anew may cut a block or a cell that it would have taken as a whole
 const double cells_at_once = 256;
 #else
 const double cells_at_once = 32;
@@ -23,7 +31,8 @@ const double cells_at_once = 32;
 
 uint cells_read = 0u;
 
-#define BLOCKS (SKIPS || VARIANT == VARIANT_BOUND)
+#define KNOWS_EMPTY (SKIPS || VARIANT == VARIANT_BOUND)
+#define BLOCKS (KNOWS_EMPTY || (TABLE > 0 && VARIANT == VARIANT_PRE))
 #if VARIANT == VARIANT_BOUND
 float allowed_error;  // of the ray in hand, in f
 
@@ -52,7 +61,7 @@ float walk(Grid g, Line line, double t, float end, Factor factor, float enough_)
   vec2 inverse = mix(vec2(0), 1 / along, moves), never = mix(vec2(1e37), vec2(0), moves);
   ivec2 ahead = ivec2(greaterThan(along, vec2(0)));
   ivec2 cell = clamp(anchor + ivec2(mix(floor(at), ceil(at) - 1, falls_back)), first, last);
-#if BLOCKS
+#if KNOWS_EMPTY
   Grid all = grids[fog.cells];
 #endif
 #if VARIANT == VARIANT_PRE
@@ -63,13 +72,47 @@ float walk(Grid g, Line line, double t, float end, Factor factor, float enough_)
     COUNT_LOOP
     int level = 0;
     bool empty = false;
-#if BLOCKS
+#if KNOWS_EMPTY
     int nothing = empty_around(all, cell);
     empty = nothing >= 0;
     level = max(nothing, 0);
 #if VARIANT == VARIANT_BOUND
     if (!empty) level = coarse_level(cell);
 #endif
+#endif
+#if TABLE > 0
+    // A cell that the ray passes from side to side; of wavelets a whole cell of theirs.
+    int size = int(wavelets >= 0);
+    ivec2 passed = cell >> size;
+    vec2 sides = (vec2(((passed + ahead) << size) - anchor) - at) * inverse + never;
+    float leaves = max(s, min(min(sides.x, sides.y), end));
+    vec2 over_cell = along * exp2(-float(size)), entry = (at + vec2(anchor - (passed << size))) * exp2(-float(size)) + s * over_cell,
+         exit = entry + (leaves - s) * over_cell;
+    vec2 straight = vec2(linear.x + s * linear.y, (leaves - s) * linear.y);
+    bool looks = distance(entry, exit) > 0.1 * on_line && on_perimeter(entry) && on_perimeter(exit);
+#if FALLS
+    if (factor.falls) {
+      looks = looks && abs(fall) * (leaves - s) <= MOST_FALL;
+      straight = straight_fall(height + s * fall, fall * (leaves - s));
+    }
+#endif
+    if (looks) {
+      Way way = way_between(entry, exit);
+      empty = true;  // nothing is left in it
+      level = size;
+#if VARIANT == VARIANT_PRE
+      cells_read += uint(wavelets < 0);
+      wavelet_cells += uint(wavelets >= 0);
+#else
+      ++cells_read;
+#endif
+#if VARIANT == VARIANT_PRE && WAVELET_PIECES > 0
+      float found = wavelets < 0 ? splines_looked_up(g, cell, way, straight) : wavelets_looked_up(wavelets, passed, way, straight);
+#else
+      float found = splines_looked_up(g, cell, way, straight);
+#endif
+      sum += found / length(over_cell);
+    }
 #endif
     ivec2 block = cell >> level;
     vec2 met = (vec2(((block + ahead) << level) - anchor) - at) * inverse + never;

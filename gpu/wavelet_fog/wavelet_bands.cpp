@@ -1,9 +1,10 @@
-// What variant `pre` needs beside the grids of all levels: the bands of wavelets and their filters.
+// What variant `pre` needs beside the grids of all levels, the bands of wavelets and their filters; and tables of path integrals.
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "gpu/wavelet_fog/leveled_fog.h"
+#include "methods/wavelet_fog/band_grid.h"
 #include "methods/wavelet_fog/leveled_fog.h"
 
 namespace airlight::gpu::wavelet_fog {
@@ -33,6 +34,24 @@ void FogOnDevice::add_wavelets(Definitions& definitions) const {
   definitions["WINDOW"] = std::to_string((end - 1 - first + n) / 2 + 1);
   const int of_wavelet = airlight::wavelet_fog::UnitPieces{n, family.q}.wavelet();
   definitions["WAVELET_COEFFICIENTS"] = std::to_string(of_wavelet * (2 * (n + 1) + of_wavelet));
+}
+
+// The paper's tables of path integrals, and what path_table.glsl is compiled with: LeveledFog::lay_bands.
+void FogOnDevice::add_table(Definitions& definitions) {
+  const scene::Fogmap& fog = *std::get<scene::FogmapPointer>(medium_.field);
+  airlight::wavelet_fog::UnitPieces pieces{fog.map.degree(), {}};
+  if (options_.variant == airlight::wavelet_fog::Options::Variant::pre && data_.levels > 0)
+    pieces.q = wavelets_of(medium_).q;
+  const bool moments = options_.fade > 0 || !std::holds_alternative<scene::SameAtAllHeights>(fog.profile);
+  const airlight::wavelet_fog::PathTable table(pieces, options_.table, options_.lookup, moments);
+  path_table_ = std::make_unique<Buffer>(context_, "tables of path integrals", table.values());
+  definitions.insert({{"TABLE", std::to_string(options_.table)},
+                      {"BILINEAR", options_.lookup == airlight::wavelet_fog::PathTable::Lookup::bilinear ? "1" : "0"},
+                      {"CHANNELS", moments ? "2" : "1"},
+                      {"PIECES", std::to_string(pieces.count())},
+                      {"WAVELET_PIECES", std::to_string(pieces.wavelet())},
+                      {"WAVELET_FIRST", fmt::format("({})", pieces.wavelet() > 0 ? pieces.wavelet_first() : 0)},
+                      {"MOST_FALL", fmt::format("{:.9g}", airlight::wavelet_fog::BandGrid::most_fall)}});
 }
 
 // Bands of each level, from the finest on: where they lie, in cells of the finer grid, then ad, da and dd.

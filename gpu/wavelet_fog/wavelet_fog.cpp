@@ -268,8 +268,6 @@ std::vector<scene::SettingSpec> WaveletFog::settings() const {
 std::vector<std::string> WaveletFog::supports(const Scene& scene, const scene::Settings& settings) const {
   std::vector<std::string> reasons = airlight::wavelet_fog::WaveletFog().supports(scene, settings);
   for (const std::string& reason : beyond_single_precision(scene)) reasons.push_back(reason);
-  const Options options = airlight::wavelet_fog::read_options(settings);
-  if (options.table > 0) reasons.push_back("table is for the CPU: shaders integrate exactly");
   return reasons;
 }
 

@@ -171,7 +171,8 @@ double BandGrid::integral(const HeightProfile& profile, const MapLine& line, Int
     const double u = here.u + from * here.du - i, v = here.v + from * here.dv - j;
     const double u1 = here.u + to * here.du - i, v1 = here.v + to * here.dv - j;
     double factor[2];
-    if (table && across > 0 && on_perimeter(u, v) && on_perimeter(u1, v1) &&
+    // A way that is only rounding is no look-up: a bilinear one finds a length between its places.
+    if (table && (to - from) * across > on_line && on_perimeter(u, v) && on_perimeter(u1, v1) &&
         straight(profile, here, {from, to}, factor))
       sum += looked_up(i, j, PathTable::place(u, v), PathTable::place(u1, v1), factor, *table) / across;
     else

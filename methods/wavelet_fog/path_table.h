@@ -32,7 +32,7 @@ class PathTable {
 
   int pieces() const { return count_; }  // along each axis
   bool moments() const { return channels_ > 1; }
-  std::size_t bytes() const { return values_.size() * sizeof(float); }
+  const std::vector<float>& values() const { return values_; }
   // Perimeter of the cell: bottom, right, top and left side in turn, 0 to 4.
   static double place(double u, double v);
   static Vec3 point(double place);  // (u, v, 0)

@@ -73,7 +73,7 @@ TEST_CASE("wavelet fog: tables of path integrals have the paper's sizes, and are
     const UnitPieces pieces{degree, family(family_of_degree(degree)).q};
     for (const PathTable::Lookup lookup : {PathTable::Lookup::nearest, PathTable::Lookup::bilinear}) {
       const PathTable table(pieces, 8, lookup);
-      CHECK(table.bytes() == std::size_t(tables[degree]) * 32 * 32 * 4);
+      CHECK(table.values().size() == std::size_t(tables[degree]) * 32 * 32);
       // The scaling functions sum up to 1, so that their integrals sum up to the length of the way; a wavelet's to those of
       // its splines.
       std::vector<double> out(tables[degree]);
