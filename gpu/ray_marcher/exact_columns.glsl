@@ -47,7 +47,7 @@ vec2 sum_and_slope(int k, vec3 o, vec3 d, float t) {
   return sum;
 }
 
-// Where the sum changes its sign. From a tenth of a per mille of a step on the error does not count: the sum is almost 0 there.
+// Where the sum changes its sign. Twelve halvings leave 2e-4 of a step; the error does not count, because the sum is almost 0 there.
 float sign_change(int k, vec3 o, vec3 d, float low, float high, bool rises) {
   for (int i = 0; i < 12; ++i) {
     float middle = 0.5 * (low + high);
