@@ -30,7 +30,7 @@ Check up_to_most_bands(Check check, int order) {
 
 // A list of numbers against a function of what was read, and against one of the device, by default at the vector's own tolerance.
 using Compute = std::function<std::vector<double>()>;
-Check list_check(const Value& v, int order, Compute compute, Compute on_device = {},
+Check list_check(const Value& v, int order, const Compute& compute, const Compute& on_device = {},
                  std::optional<OwnTolerance> there = {}) {
   const std::vector<double> expected =
       v["expected"].is_array() ? v["expected"].numbers() : std::vector<double>{v["expected"].number()};

@@ -16,7 +16,7 @@ using scene::TensorShape;
 
 constexpr double gate = 1e-12;  // of the vectors: relative to the largest entry
 
-Check compare_matrices(std::string name, const Value& v, Eigen::MatrixXd got) {
+Check compare_matrices(const std::string& name, const Value& v, const Eigen::MatrixXd& got) {
   const Tensor expected = tensor_from(v);
   if (expected.shape[0] != got.rows() || expected.shape[1] != got.cols())
     v.complain(fmt::format("a matrix of {} x {}", got.rows(), got.cols()));

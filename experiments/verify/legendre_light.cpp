@@ -256,7 +256,7 @@ Check read_legendre_upwind(const Value& v) {
   const bool flat_box = !v["R"][0][0].is_array();
   const scene::TensorShape all = {options.n, options.n, flat_box ? 1 : options.n};
   const auto coefficients = [&](const char* field) {
-    const Tensor tensor = tensor_from(v[field]);
+    Tensor tensor = tensor_from(v[field]);
     if (tensor.shape != all) v[field].complain(fmt::format("{} coefficients along each axis", options.n));
     return tensor;
   };
