@@ -56,7 +56,11 @@ void FogOnDevice::make_programs() {
   programs_.tiles = &program("fogshop/tiles.comp", square);
   const Definitions noise = {{"NOISE", model_.noise ? "1" : "0"}};
   if (model_.paper()) {
-    programs_.paper = &program("fogshop/paper.comp", with(square, noise));
+    const auto flag = [](bool on) { return std::string(on ? "1" : "0"); };
+    programs_.paper = &program("fogshop/paper.comp", with(with(square, noise), {{"SOME_LIGHTS", flag(lights > 0)},
+                                                                                {"ONE_LIGHT", flag(lights == 1)},
+                                                                                {"GREY", flag(model_.fog.grey())},
+                                                                                {"PHASE", flag(model_.fog.g != 0)}}));
     check_iterations(context_, n * (1.0 + lights), "the paper's airlight");
   }
   if (model_.paper() && !needs_.sky_volume) return;

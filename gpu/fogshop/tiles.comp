@@ -11,7 +11,7 @@ uniform int tile_row;
 
 const int group_size = int(LOCAL_SIZE_X * LOCAL_SIZE_Y);
 #include "fogshop/ranks.glsl"
-shared uint farthest;  // bits of the greatest length of a ray; 0: no pixel is wanted
+shared uint farthest, nearest;  // bits of the greatest and the least length of a ray; the greatest 0: no pixel is wanted
 shared uint spread_bits, start_bits;
 
 void main() {
@@ -20,10 +20,16 @@ void main() {
   ivec2 first_pixel = ivec2(gl_WorkGroupID.xy) * ivec2(LOCAL_SIZE_X, LOCAL_SIZE_Y) + ivec2(0, tile_row * int(LOCAL_SIZE_Y));
   ivec2 pixel = first_pixel + ivec2(gl_LocalInvocationID.xy);
   ivec2 last_pixel = min(first_pixel + ivec2(LOCAL_SIZE_X, LOCAL_SIZE_Y), ivec2(grid_width, grid_height));
-  if (local == 0) farthest = spread_bits = start_bits = 0;
+  if (local == 0) {
+    farthest = spread_bits = start_bits = 0;
+    nearest = floatBitsToUint(far_away);
+  }
   barrier();
   // Positive floats are in the order of their bits; a ray of length 0 is wanted too.
-  if (is_computed(pixel)) atomicMax(farthest, floatBitsToUint(max(ray_length(pixel), 1e-37)));
+  if (is_computed(pixel)) {
+    atomicMax(farthest, floatBitsToUint(max(ray_length(pixel), 1e-37)));
+    atomicMin(nearest, floatBitsToUint(max(ray_length(pixel), 1e-37)));
+  }
   barrier();
   if (farthest == 0) {
     if (local == 0) tile_list[list] = -1;
@@ -48,6 +54,9 @@ void main() {
   for (int i = begin; i < end; ++i)
     if (touches(cone, gaussians[i], far)) tile_list[found_at + count++] = i;
   int rank = rank_of(local, count), at = list + 1 + rank;
-  for (int k = 0; k < count; ++k) tile_list[at + k] = tile_list[found_at + k];
+  for (int k = 0; k < count; ++k) {
+    int i = tile_list[found_at + k];
+    tile_list[at + k] = passed_whole(cone, gaussians[i], uintBitsToFloat(nearest)) ? -1 - i : i;
+  }
   if (local == group_size - 1) tile_list[list] = rank + count;
 }
