@@ -15,9 +15,10 @@ using airlight::compensated_ray_marching::Options;
 using airlight::compensated_ray_marching::Solution;
 using diffusion::SystemData;
 
-constexpr int row_lanes = 64, summing = 256;          // invocations of a work group
-constexpr int parts = 64, rows = 4, columns = 16;     // of a product: parts of a sum; results of a work group, and transposed
-constexpr int first_solve_iterations = 8;                // told to the device before any is looked at
+constexpr int row_lanes = 64, summing = 256;  // invocations of a work group
+constexpr int parts = 64, rows = 4,
+              columns = 16;                // of a product: parts of a sum; results of a work group, and transposed
+constexpr int first_solve_iterations = 8;  // told to the device before any is looked at
 
 enum GradientStage { stage_begin, stage_residual, stage_step, stage_turn, stage_spread };  // diffusion_gradients.comp
 constexpr auto vector_count = diffusion::vectors_of_least_squares;

@@ -1,4 +1,4 @@
-// Lists the Gaussians that any ray from a light within or beside a cell of directions may meet, in their order. A cell is one work group, each
+// Lists the Gaussians that rays from a light in or beside a cell of directions may meet, in their order. A cell is one work group, each
 // invocation tests a stretch of the Gaussians. First the numbers alone, then (FILL) the lists from where they begin.
 layout(local_size_x = LOCAL_SIZE_X) in;
 #include "fogshop/fog.glsl"

@@ -6,8 +6,8 @@
 // Where the list of each cell of each light begins, and the last one ends; then the lists.
 layout(std430, binding = AT_LIGHT_LISTS) readonly buffer LightLists { int light_list[]; };
 const int listing = int(LOCAL_SIZE_X * LOCAL_SIZE_Y), listing_words = (listing + 31) / 32;
-// From the first on those that all ways of the group pass whole, from the last on the others: centre from the light [m] and a^2 over the
-// logarithm of 2; depth of half of it, or of all if it is passed whole [-], squared radius [m^2], a [1/m], and 1 if the light is far before it.
+// From the first on those that all ways of the group pass whole, from the last on the others: centre from the light [m] and a^2 over log 2;
+// depth of half of it, or of all if it is passed whole [-], squared radius [m^2], a [1/m], and 1 if the light is far before it.
 shared vec4 listed_center[listing], listed[listing];
 shared uint passed_bits[2 * listing_words];  // of those passed whole, then of the others
 shared int first_way;

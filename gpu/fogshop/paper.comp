@@ -15,7 +15,7 @@ layout(local_size_x = LOCAL_SIZE_X, local_size_y = LOCAL_SIZE_Y) in;
 layout(std430, binding = AT_DEPTHS) readonly buffer Depths { float segment_depth[]; };
 
 const int group_size = int(LOCAL_SIZE_X * LOCAL_SIZE_Y);
-// The Gaussians of the tile in hand: centre [m] and a^2 over the logarithm of 2; depth of half of it [-], squared radius [m^2], a [1/m], and
+// The Gaussians of the tile in hand: centre [m] and a^2 over log 2; depth of half of it [-], squared radius [m^2], a [1/m], and
 // the depth from the view point to the centre, with ONE_LIGHT also from that to the centre.
 shared vec4 near_center[group_size], near_more[group_size];
 shared ivec2 near_place[group_size];  // in the whole list; PASSED_WHOLE and LIGHTS_FAR

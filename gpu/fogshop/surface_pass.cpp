@@ -12,7 +12,8 @@
 namespace airlight::gpu::fogshop {
 namespace {
 
-constexpr int listed_bytes = 32;  // that an invocation of the surfaces has in shared memory for Gaussians (light_lists.glsl)
+constexpr int listed_bytes =
+    32;  // that an invocation of the surfaces has in shared memory for Gaussians (light_lists.glsl)
 
 std::vector<double> light_places(const airlight::fogshop::Model& model) {
   std::vector<double> places;

@@ -49,6 +49,9 @@ SHOWN = {
     "fogshop/surfaces.comp": ("  if (loops_cut())",
                               "  for (int c = 0; c < 3; ++c) surface_layer[3 * place + c] = trips_shown(pixel)[c];\n"
                               "  if (loops_cut())", "surface"),
+    "fogshop/tiles.comp": ("  list_gaussians(0);",
+                           "  list_gaussians(0);\n  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, tile_row * int(LOCAL_SIZE_Y));\n"
+                           "  if (is_computed(pixel)) pixels[place_of(pixel)] = vec4(trips_shown(pixel), 0);", "airlight"),
     "fogshop/environment.comp": ("  pixels[index].rgb += max(sum * T * exp(-T), vec3(0));",
                                  "  pixels[index].rgb = trips_shown(pixel) + 0 * max(sum * T * exp(-T), vec3(0));",
                                  "airlight"),
@@ -189,6 +192,9 @@ def shown(texts, target, method):
         first = NO_MARCH if target.endswith("ranges.comp") else blocks_named(VOXELS_SHOWN)
         by = "compensated_ray_marching/march.comp"
         texts[by] = replaced(texts[by], main, main.replace("\n", "\n" + first))
+    if target == "fogshop/tiles.comp":
+        written = "if (visible) pixels[place_of(pixel)] = vec4(airlight * albedo, depth);"
+        texts["fogshop/paper.comp"] = replaced(texts["fogshop/paper.comp"], written, written.replace("visible", "false"))
     old, new, layer = SHOWN[target]
     new = blocks_named(new)
     texts[target] = replaced(texts[target], old, "\n#if COUNT_TRIPS\n" + new + "\n#else\n" + old + "\n#endif\n")
