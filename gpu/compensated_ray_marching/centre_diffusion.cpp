@@ -15,8 +15,10 @@ using airlight::compensated_ray_marching::Options;
 using airlight::compensated_ray_marching::Solution;
 using diffusion::SystemData;
 
-constexpr int row_lanes = 64, edge = 16, summing = 256;  // invocations of a work group
-constexpr int first_solve_iterations = 8;                // told to the device before any is looked at
+constexpr int row_lanes = 64, summing = 256;  // invocations of a work group
+constexpr int parts = 64, rows = 4,
+              columns = 16;                // of a product: parts of a sum; results of a work group, and transposed
+constexpr int first_solve_iterations = 8;  // told to the device before any is looked at
 
 enum GradientStage { stage_begin, stage_residual, stage_step, stage_turn, stage_spread };  // diffusion_gradients.comp
 constexpr auto vector_count = diffusion::vectors_of_least_squares;
@@ -47,8 +49,8 @@ CentreDiffusion::CentreDiffusion(Context& context, const CentreTables& tables, c
   matrix_program_ = of("diffusion_matrix", row_lanes, 1, {{"SUMS", "5"}});
   right_program_ = of("diffusion_right", row_lanes, 1, {{"SUMS", "9"}});
   again_program_ = of("diffusion_again", row_lanes, 1, {{"SUMS", "11"}});
-  product_program_ = of("diffusion_product", edge, edge, {{"TRANSPOSED", "0"}});
-  transposed_program_ = of("diffusion_product", edge, edge, {{"TRANSPOSED", "1"}});
+  product_program_ = of("diffusion_product", parts, rows, {{"TRANSPOSED", "0"}});
+  transposed_program_ = of("diffusion_product", columns, parts, {{"TRANSPOSED", "1"}});
   gradients_program_ = of("diffusion_gradients", summing, 1,
                           {{"LSQR", is_lsqr(options.paper.solver) ? "1" : "0"},
                            {"STAGE_BEGIN", std::to_string(stage_begin)},
@@ -150,7 +152,7 @@ void CentreDiffusion::product(const Group& g, bool transposed, int from, int to)
   g.matrix->bind(at::matrix);
   p.set("from_vector", from);
   p.set("to_vector", to);
-  p.dispatch(count_, 1, g.systems);
+  p.dispatch(transposed ? count_ : (count_ + rows - 1) / rows * parts, 1, g.systems);
 }
 
 void CentreDiffusion::gradients(const Group& g, int stage) {

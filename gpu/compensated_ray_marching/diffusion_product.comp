@@ -26,12 +26,9 @@ void main() {
 #endif
   parts[y * LOCAL_SIZE_X + x] = sum;
   barrier();
-  if (part != 0 || result >= unknowns) return;
-  sum = 0;
-#if TRANSPOSED
-  for (int k = 0; k < parts_of; ++k) sum += parts[k * LOCAL_SIZE_X + x];
-#else
-  for (int k = 0; k < parts_of; ++k) sum += parts[y * LOCAL_SIZE_X + k];
-#endif
-  vectors[vector_at(z, to_vector) + result] = sum;
+  for (int half_ = parts_of / 2; half_ > 0; half_ /= 2) {
+    if (part < half_) parts[y * LOCAL_SIZE_X + x] += parts[y * LOCAL_SIZE_X + x + half_ * (TRANSPOSED != 0 ? LOCAL_SIZE_X : 1)];
+    barrier();
+  }
+  if (part == 0 && result < unknowns) vectors[vector_at(z, to_vector) + result] = parts[y * LOCAL_SIZE_X + x];
 }

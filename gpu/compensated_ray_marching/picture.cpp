@@ -142,7 +142,7 @@ void Picture::march(const View& view) const {
   set_camera(find, view, middle_);
   density_->bind(find);
   find.set("slice", slice_);
-  find.set("widths2", density_->widths2());
+  find.set("farthest", density_->widths2());
   find.dispatch(view.width, view.height);
   Program& p = *march_;
   set_camera(p, view, middle_);

@@ -8,20 +8,27 @@ layout(std430, binding = AT_COLUMN) writeonly buffer Column { float column[]; };
 layout(std430, binding = AT_DISTANCES) readonly buffer Distances { float distances[]; };  // where something ends the ray [m]
 uniform int has_ends;
 uniform float slice;           // across [m]
-uniform float widths2;         // of Gaussians: beyond so many widths, squared, there is nothing
+#if GAUSSIANS
+#include "compensated_ray_marching/tile_gaussians.glsl"
+#endif
 
 void main() {
   ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-  if (at.x >= width || at.y >= height) return;
+  bool within_film = at.x < width && at.y < height;
   vec3 origin, direction;
   camera_ray(vec2(at) + 0.5, origin, direction);
   vec2 t = vec2(1e37, -1e37);
 #if GAUSSIANS
-  for (int i = 0; i < gaussian_count; ++i) {
-    float nearest, aside;
-    vec2 part = within(gaussians[i], widths2, origin, direction, nearest, aside);
-    part.x = max(part.x, 0.0);
-    if (part.x < part.y) t = vec2(min(t.x, part.x), max(t.y, part.y));
+  if (!begin_tile(within_film, origin, direction, vec2(0, 1e37))) return;
+  for (int turn = 0; turn * tile_lanes < gaussian_count; ++turn) {
+    look_at(turn);
+    for (int w = 0; w < tile_words; ++w)
+      for (uint left = tile_word(turn, w); left != 0u; left &= left - 1u) {
+        float nearest, aside;
+        vec2 part = within(gaussians[turn * tile_lanes + 32 * w + findLSB(left)], farthest, origin, direction, nearest, aside);
+        part.x = max(part.x, 0.0);
+        if (part.x < part.y) t = vec2(min(t.x, part.x), max(t.y, part.y));
+      }
   }
 #else
   vec3 o = sample_at(origin), d = to_samples * direction;
@@ -36,6 +43,7 @@ void main() {
     }
   }
 #endif
+  if (!within_film) return;
   int place = at.y * width + at.x;
   vec2 region = region_part(origin, direction);
   t = vec2(max(t.x, region.x), min(t.y, region.y));

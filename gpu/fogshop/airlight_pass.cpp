@@ -10,6 +10,7 @@ namespace airlight::gpu::fogshop {
 namespace {
 
 constexpr int tile = 8;                                     // pixels, to both sides; a tile is a work group
+constexpr int span = 8, gaussians_with_squares = 512;       // tiles of a square; fewer Gaussians need none
 constexpr int nodes_each = 32, slices_each = 8;             // an invocation: shares.comp, slice_depths.comp
 constexpr std::size_t strip_bytes = std::size_t(64) << 20;  // of the lists, and of what the passes of variant S hand on
 const Definitions square = {{"LOCAL_SIZE_X", std::to_string(tile)}, {"LOCAL_SIZE_Y", std::to_string(tile)}};
@@ -53,10 +54,17 @@ void FogOnDevice::make_programs() {
     programs_.homogeneous = &program("fogshop/homogeneous.comp", square);
     return;
   }
-  programs_.tiles = &program("fogshop/tiles.comp", square);
+  const bool squares = n > gaussians_with_squares;
+  const Definitions spanned = with(square, {{"SPAN", std::to_string(squares ? span : 0)}});
+  programs_.tiles = &program("fogshop/tiles.comp", spanned);
+  programs_.squares = squares ? &program("fogshop/squares.comp", spanned) : nullptr;
   const Definitions noise = {{"NOISE", model_.noise ? "1" : "0"}};
   if (model_.paper()) {
-    programs_.paper = &program("fogshop/paper.comp", with(square, noise));
+    const auto flag = [](bool on) { return std::string(on ? "1" : "0"); };
+    programs_.paper = &program("fogshop/paper.comp", with(with(square, noise), {{"SOME_LIGHTS", flag(lights > 0)},
+                                                                                {"ONE_LIGHT", flag(lights == 1)},
+                                                                                {"GREY", flag(model_.fog.grey())},
+                                                                                {"PHASE", flag(model_.fog.g != 0)}}));
     check_iterations(context_, n * (1.0 + lights), "the paper's airlight");
   }
   if (model_.paper() && !needs_.sky_volume) return;
@@ -122,12 +130,16 @@ void FogOnDevice::compute(const Grid& grid, Frame& frame) {
   const std::size_t row_of_lists = std::size_t(columns) * (2 * n + 1) * 4,
                     row_of_rays = std::size_t(fields) * grid.width() * tile * 4;
   const std::size_t most = std::min(strip_bytes, context_.limits().storage_block);
-  const int height = int(std::clamp<std::size_t>(most / std::max(row_of_lists, row_of_rays), 1, rows));
+  // Squares take an eighth of what their tiles take, or less.
+  const int height =
+      int(std::clamp<std::size_t>(most / std::max(row_of_lists + row_of_lists / span, row_of_rays), 1, rows));
   const std::string which = grid.only_edges ? " of edges" : "";  // both are kept where both are made
-  frame.buffers.get("tile lists" + which, height * row_of_lists).bind(at::tile_lists);
+  const std::size_t squares = programs_.squares ? std::size_t(blocks(height, span)) * blocks(columns, span) : 0;
+  frame.buffers.get("tile lists" + which, height * row_of_lists + squares * (2 * std::size_t(n) + 1) * 4)
+      .bind(at::tile_lists);
   if (hands_on) frame.buffers.get("values of rays" + which, height * row_of_rays).bind(at::ray_values);
-  for (Program* p : {programs_.tiles, programs_.paper, programs_.stretch, programs_.shares, programs_.slice_depths,
-                     programs_.slice_light, programs_.even_depths, programs_.sky_light})
+  for (Program* p : {programs_.squares, programs_.tiles, programs_.paper, programs_.stretch, programs_.shares,
+                     programs_.slice_depths, programs_.slice_light, programs_.even_depths, programs_.sky_light})
     if (p) set_grid(*p, grid);
   for (Program* p :
        {programs_.paper, programs_.stretch, programs_.shares, programs_.slice_depths, programs_.even_depths})
@@ -165,6 +177,14 @@ void FogOnDevice::compute_strip(const Grid& grid, const Strip& strip, Frame& fra
     p->dispatch(width, height, blocks_of_each);
   };
   frame.timer.begin("tiles");
+  if (programs_.squares) {
+    for (Program* p : {programs_.squares, programs_.tiles}) {
+      p->set("squares_at", strip.rows * strip.columns * (2 * model_.gaussians.count + 1));
+      p->set("squares_along", blocks(strip.columns, span));
+    }
+    programs_.squares->set("tile_row", strip.first);
+    programs_.squares->dispatch(blocks(strip.columns, span) * tile, blocks(strip.rows, span) * tile);
+  }
   run(programs_.tiles);
   frame.timer.begin(grid.only_edges ? "edges at full resolution" : "airlight");
   if (programs_.stretch) run(programs_.stretch);

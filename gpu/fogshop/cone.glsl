@@ -9,6 +9,13 @@ Cone cone_of(vec3 origin, vec3 axis, float start, float spread) {
   return Cone(origin, axis, start, spread, sqrt(max(0, 1 - spread * spread)));
 }
 
+// Whether all rays of the cone, which are `least` metres long or longer, pass a Gaussian from before it to behind it.
+bool passed_whole(Cone cone, Gaussian g, float least) {
+  vec3 q = g.center - cone.origin;
+  float m = dot(q, cone.axis), apart = tail_length / g.a + cone.start + length(q) * cone.spread;
+  return m >= apart && m + apart <= least;
+}
+
 // Whether rays that end `far` metres from their start come within reach of a Gaussian.
 bool touches(Cone cone, Gaussian g, float far) {
   vec3 q = g.center - cone.origin;

@@ -98,7 +98,7 @@ void FogOnDevice::become(const airlight::fogshop::Needs& needs, const airlight::
     refill(lights_, context_, "lights", data);
     lights_uploaded_ = std::move(now);
   }
-  if (!same.gaussians) make_programs();  // loops over Gaussians may be too long now
+  if (!same.gaussians || !same.fog) make_programs();  // loops over Gaussians may be too long now
 }
 
 // A light keeps its map where it stands still, whatever its number is now; the others share the places that are left.

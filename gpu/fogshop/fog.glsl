@@ -80,27 +80,30 @@ float erf_between(Place begin, Place end) {
   float d = begin.x >= 0 ? begin.tail - end.tail : end.x <= 0 ? end.tail - begin.tail : 2 - begin.tail - end.tail;
   return max(d, 0);
 }
-// From `begin` on; leaves out tails that change neither 1 nor 2 in single precision: erfc(4) is 1.6e-8.
-const float no_tail = 4;
-float erf_between(inout Place begin, float end) {
-  float d = 2;
-  begin.tail = 0;
-  if (begin.x > -no_tail || end < no_tail) {
-    bool across = begin.x <= 0 && end >= 0;
-    Place last = Place(end, 0);
-    if (!across || begin.x > -no_tail) {
-      begin.tail = tail(begin.x);
-    }
-    if (!across || end < no_tail) {
-      last.tail = tail(end);
-    }
-    d = erf_between(begin, last);
+// From one place to another, begin <= end. `tail` of the nearer one is the greater. The other's is left out where that changes nothing in
+// single precision: erfc(sqrt(x^2 + 17.5)) is below 3e-8 erfc(x) for any x.
+float erf_between(float begin, float end, out float tail_of_begin) {
+  bool across = begin <= 0 && end >= 0;
+  float near = min(abs(begin), abs(end)), far = max(abs(begin), abs(end)), greater = tail(near), less = 0;
+#if ERF_COUNT == 0
+  if (far * far < near * near + 17.5) {
+    less = tail(far);
   }
-  return d;
+#else
+  less = tail(far);
+#endif
+  tail_of_begin = abs(begin) > near ? less : greater;
+  return max((across ? 2 - greater : greater) - less, 0);
 }
 float erf_between(float begin, float end) {
-  Place from = Place(begin, 0);
-  return erf_between(from, end);
+  float unused;
+  return erf_between(begin, end, unused);
+}
+const float tail_length = 4.2;  // erfc of it is 2.9e-9, and changes neither 1 nor 2 in single precision
+// From far before: erf(end) + 1.
+float erf_up_to(float end) {
+  float rest = tail(end);
+  return end >= 0 ? 2 - rest : rest;
 }
 
 // A Gaussian as a line meets it: its optical depth between two places is depth times erf_between.
@@ -120,9 +123,9 @@ float depth_beside(Gaussian g, vec3 origin, vec3 direction) {
 }
 // Without its depth and the start of the line, 0 both.
 Crossing cross_geometry(Gaussian g, vec3 origin, vec3 direction, float length_) {
-  float middle = dot(g.center - origin, direction);
+  float middle = dot(g.center - origin, direction), outside = max(max(-middle, middle - length_), 0);
   float chord_squared = g.radius_squared - square_beside(g, origin, direction), chord = sqrt(max(chord_squared, 0));
-  bool met = chord_squared >= 0 && middle + chord >= 0 && middle - chord <= length_;
+  bool met = chord_squared >= outside * outside;
   return Crossing(met, middle, chord, g.a, 0, Place(0, 0));
 }
 void complete(inout Crossing c, Gaussian g, vec3 origin, vec3 direction) {

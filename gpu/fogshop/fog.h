@@ -69,7 +69,8 @@ class FogOnDevice {
 
  private:
   struct Programs {
-    Program *tiles = nullptr, *homogeneous = nullptr, *paper = nullptr, *view_depths = nullptr, *upsample = nullptr;
+    Program *squares = nullptr, *tiles = nullptr, *homogeneous = nullptr, *paper = nullptr, *view_depths = nullptr,
+            *upsample = nullptr;
     Program *stretch = nullptr, *shares = nullptr, *edges = nullptr, *slice_depths = nullptr, *slice_light = nullptr;
     Program *even_depths = nullptr, *sky_light = nullptr, *environment = nullptr, *composition = nullptr;
   };

@@ -1,5 +1,6 @@
 // Directions from a light in the square cells of an octahedral map.
 uniform int cells;  // to a side, even (0: there are no lists): so a cell lies on one face of the octahedron, or is cut along its diagonal
+const float list_margin = 0.08;  // rays of lists leave those of the cell by up to this, per metre
 
 vec2 octahedral(vec3 d) {
   vec2 q = d.xy / max(abs(d.x) + abs(d.y) + abs(d.z), 1e-30);

@@ -1,4 +1,4 @@
-// Lists the Gaussians that any ray from a light within a cell of directions may meet, in their order. A cell is one work group, each
+// Lists the Gaussians that rays from a light in or beside a cell of directions may meet, in their order. A cell is one work group, each
 // invocation tests a stretch of the Gaussians. First the numbers alone, then (FILL) the lists from where they begin.
 layout(local_size_x = LOCAL_SIZE_X) in;
 #include "fogshop/fog.glsl"
@@ -17,7 +17,7 @@ void main() {
   vec3 axis = direction_at(corner + 1 / float(cells));
   float spread = 0;
   for (int k = 0; k < 4; ++k) spread = max(spread, length(direction_at(corner + vec2(k & 1, k >> 1) * (2 / float(cells))) - axis));
-  Cone cone = cone_of(lights[cell / (cells * cells)].position, axis, 0, spread);
+  Cone cone = cone_of(lights[cell / (cells * cells)].position, axis, 0, spread + list_margin);
 
   int each = (gaussian_count + group_size - 1) / group_size;
   int begin = local * each, end = min(begin + each, gaussian_count), count = 0;

@@ -9,7 +9,10 @@ shared int wish_of_group;
 int load_near(int first, int count) {
   int local = int(gl_LocalInvocationIndex);
   barrier();
-  if (first + local < count) near_block[local] = gaussians[tile_list[list_of_group() + 1 + first + local]];
+  if (first + local < count) {
+    int entry = tile_list[list_of_group() + 1 + first + local];
+    near_block[local] = gaussians[entry < 0 ? -1 - entry : entry];
+  }
   barrier();
   return min(group_size, count - first);
 }

@@ -32,8 +32,8 @@ vec3 bent_direction(Gaussian g, vec3 origin, vec3 direction, vec3 nearest) {
 }
 
 // y' = T_i(v, p) along the bent ray over the unchanged length.
-float bent_depth(Gaussian g, Crossing c, vec3 origin, vec3 direction, float length_) {
-  vec3 r = bent_direction(g, origin, direction, origin + clamp(c.middle, 0, length_) * direction);
+float bent_depth(Gaussian g, float middle, vec3 origin, vec3 direction, float length_) {
+  vec3 r = bent_direction(g, origin, direction, origin + clamp(middle, 0, length_) * direction);
   float m = dot(g.center - origin, r);
   return depth_beside(g, origin, r) * erf_between(place_at(-g.a * m), place_at(g.a * (length_ - m)));
 }

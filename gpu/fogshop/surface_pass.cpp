@@ -12,6 +12,9 @@
 namespace airlight::gpu::fogshop {
 namespace {
 
+constexpr int listed_bytes =
+    32;  // that an invocation of the surfaces has in shared memory for Gaussians (light_lists.glsl)
+
 std::vector<double> light_places(const airlight::fogshop::Model& model) {
   std::vector<double> places;
   for (const airlight::fogshop::LightModel& light : model.lights)
@@ -105,7 +108,7 @@ void SurfaceShading::upload_tables(const scene::Scene& scene, const FogOnDevice&
   const int order = model_.options.sh_order, rows = (turned ? 2 * (2 * order - 1) : 0) + order;
   const int held = 4 * (3 * rows + (transfer ? (tabulated ? 4 : 2) * order * order : 0));  // [B]
   int height = 8;
-  while (height > 1 && 8 * height * held > 32768) height /= 2;
+  while (height > 1 && 8 * height * (held + listed_bytes) > 32000) height /= 2;
   Definitions definitions{{"LOCAL_SIZE_X", "8"},
                           {"LOCAL_SIZE_Y", std::to_string(height)},
                           {"TABULATED", flag(tabulated)},

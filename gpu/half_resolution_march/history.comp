@@ -53,7 +53,8 @@ bool look_up(ivec2 at, Block block, out vec3 airlight, out vec3 transmittance) {
   return total >= 0.01;
 }
 
-// Limits what the last picture has to the range of the blocks around. True: that changed it.
+// Limits what the last picture has to the range of the blocks around. True: that changed it, and not all of them are clear
+// to 1e-6. Light of clear blocks comes from places at the edge of smoke, and rounding decides on which side they are.
 bool limit(ivec2 at, inout vec3 airlight, inout vec3 transmittance) {
   int own = at.y * block_columns + at.x;
   vec3 least = mean_airlight(own), most = least, thick = mean_transmittance(own), clear = thick;
@@ -64,10 +65,10 @@ bool limit(ivec2 at, inout vec3 airlight, inout vec3 transmittance) {
       least = min(least, a), most = max(most, a), thick = min(thick, t), clear = max(clear, t);
     }
   vec3 limited = clamp(airlight, least, most), through = clamp(transmittance, thick, clear);
-  bool changed = limited != airlight || through != transmittance;
+  bool all_clear = all(greaterThan(min(thick, transmittance), vec3(1 - 1e-6))), changed = limited != airlight || through != transmittance;
   airlight = limited;
   transmittance = through;
-  return changed;
+  return changed && !all_clear;
 }
 #endif
 

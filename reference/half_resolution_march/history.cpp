@@ -27,7 +27,8 @@ double look_up(const LowFilm& film, const Trace& trace, double edge, FogPixel& m
   return total;
 }
 
-// Limits `fog` to what blocks around (x, y) have. True if that changed it.
+// Limits `fog` to what blocks around (x, y) have. True if that changed it, and not all of them are clear to 1e-6. Light of clear
+// blocks comes from places at the edge of smoke, and rounding decides on which side they are.
 bool limit(const LowFilm& film, int x, int y, FogPixel& fog) {
   FogPixel least = film.fog[film.at(x, y)], most = least;
   for (int j = std::max(0, y - 1); j <= std::min(film.height() - 1, y + 1); ++j)
@@ -36,9 +37,9 @@ bool limit(const LowFilm& film, int x, int y, FogPixel& fog) {
       most = most.max(film.fog[film.at(i, j)]);
     }
   const FogPixel limited = fog.max(least).min(most);
-  const bool changed = (limited != fog).any();
+  const bool all_clear = (least.min(fog).segment<3>(3) > 1 - 1e-6f).all(), changed = (limited != fog).any();
   fog = limited;
-  return changed;
+  return changed && !all_clear;
 }
 
 }  // namespace

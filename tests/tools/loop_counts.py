@@ -21,7 +21,10 @@ WIDTH, HEIGHT, SCALE = 800, 600, 1024
 FOGSHOP = [("fogshop/table1/" + name, name) for name in ("gargoyle", "box", "terrain", "city", "motorcycle")]
 PLANES = [("shadow_planes/" + file, name) for file, name in
           (("fig8a", "pens"), ("fig8b", "media"), ("fig8c", "columns"), ("fig1", "nave"), ("fig7_shade", "Figure 7"))]
-OPTIONS = {"fogshop_gpu": ["--set", "variant=paper", "--set", "reflectance=npsf"], "shadow_planes_gpu": [], "wavelet_fog_gpu": []}
+OPTIONS = {"fogshop_gpu": ["--set", "variant=paper", "--set", "reflectance=npsf"], "shadow_planes_gpu": [], "wavelet_fog_gpu": [],
+           "compensated_ray_marching_gpu": ["--set", "variant=paper", "--set", "iterations=40"]}
+SMOKE = [("compensated_ray_marching/plume_lobe", "fitted")] + [
+    ("compensated_ray_marching/gaussians_lobe", f"{n} Gaussians", ["--override", f'medium.0.file="plume_{n}.csv"']) for n in (100, 400, 800)]
 SPLINES = {"Haar": 0, "linear": 1, "quadratic": 2}
 
 
@@ -46,6 +49,9 @@ SHOWN = {
     "fogshop/surfaces.comp": ("  if (loops_cut())",
                               "  for (int c = 0; c < 3; ++c) surface_layer[3 * place + c] = trips_shown(pixel)[c];\n"
                               "  if (loops_cut())", "surface"),
+    "fogshop/tiles.comp": ("  list_gaussians(0);",
+                           "  list_gaussians(0);\n  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, tile_row * int(LOCAL_SIZE_Y));\n"
+                           "  if (is_computed(pixel)) pixels[place_of(pixel)] = vec4(trips_shown(pixel), 0);", "airlight"),
     "fogshop/environment.comp": ("  pixels[index].rgb += max(sum * T * exp(-T), vec3(0));",
                                  "  pixels[index].rgb = trips_shown(pixel) + 0 * max(sum * T * exp(-T), vec3(0));",
                                  "airlight"),
@@ -54,7 +60,29 @@ SHOWN = {
     "wavelet_fog/columns.comp": ("    depths[place] = part + 1 < parts ? vec4(before.rgb, sum) : vec4(before.rgb + depth_of(sum), 0);",
                                  "    depths[place] = vec4((part > 0 ? before.rgb : vec3(0)) + trips_shown(at), before.w * 0 + sum * 0);",
                                  "mean"),
+    "compensated_ray_marching/ranges.comp": ("airlight[3 * place + c] = 0;", "airlight[3 * place + c] = trips_shown(at)[c];", "airlight"),
+    "compensated_ray_marching/march.comp": ("airlight[3 * place + c] += light[c];", "airlight[3 * place + c] += trips_shown(at)[c];",
+                                            "airlight"),
+    "compensated_ray_marching/smoke_volume.comp": (
+        "volume[at.x + size.x * (at.y + size.y * at.z)] = vec4(density * source, density);",
+        "int warp = 2 * int(gl_WorkGroupID.x + gl_NumWorkGroups.x * (gl_WorkGroupID.y + gl_NumWorkGroups.y * gl_WorkGroupID.z)) + lane / 32;\n"
+        "int block_shown = warp % BLOCKS;\n"
+        "volume[at.x + size.x * (at.y + size.y * at.z)] =\n"
+        "  vec4(trips_shown(ivec2(8 * (block_shown % BLOCKS_ALONG), 4 * (block_shown / BLOCKS_ALONG))), density + weight + sum.x);",
+        "airlight"),
 }
+# What march.comp does instead where another shader's counts are shown: nothing, or it shows voxels, those of a warp in a block of pixels.
+NO_MARCH = "  return;\n"
+VOXELS_SHOWN = """  if (first_slice == 0 && at.x < width && at.y < height) {
+    int block = at.y / 4 * BLOCKS_ALONG + at.x / 8, warp = block + BLOCKS * (block & 1), lane = at.y % 4 * 8 + at.x % 8 + 32 * (warp & 1);
+    ivec3 size = ivec3(samples_along), groups = (size + 3) / 4;
+    ivec3 v = 4 * (ivec3(warp / 2) / ivec3(1, groups.x, groups.x * groups.y) % ivec3(groups.x, groups.y, 1 << 30)) +
+              ivec3(lane % 4, lane / 4 % 4, lane / 16);
+    vec3 shown = all(lessThan(v, size)) ? volume[v.x + size.x * (v.y + size.y * v.z)].rgb : vec3(0);
+    for (int c = 0; c < 3; ++c) airlight[3 * (at.y * width + at.x) + c] = shown[c];
+  }
+  return;
+"""
 
 
 def matching(text, at, brackets="()"):
@@ -159,9 +187,23 @@ def shown(texts, target, method):
         texts["wavelet_fog/composition.comp"] = replaced(texts["wavelet_fog/composition.comp"],
                                                          "has_fog != 0 ? depths[place].rgb : vec3(0), behind);",
                                                          "vec3(0), depths[place].rgb);")
+    if target in ("compensated_ray_marching/ranges.comp", "compensated_ray_marching/smoke_volume.comp"):
+        main = "  ivec2 at = ivec2(gl_GlobalInvocationID.xy);\n  bool within_film"
+        first = NO_MARCH if target.endswith("ranges.comp") else blocks_named(VOXELS_SHOWN)
+        by = "compensated_ray_marching/march.comp"
+        texts[by] = replaced(texts[by], main, main.replace("\n", "\n" + first))
+    if target == "fogshop/tiles.comp":
+        written = "if (visible) pixels[place_of(pixel)] = vec4(airlight * albedo, depth);"
+        texts["fogshop/paper.comp"] = replaced(texts["fogshop/paper.comp"], written, written.replace("visible", "false"))
     old, new, layer = SHOWN[target]
+    new = blocks_named(new)
     texts[target] = replaced(texts[target], old, "\n#if COUNT_TRIPS\n" + new + "\n#else\n" + old + "\n#endif\n")
     return layer
+
+
+def blocks_named(text):
+    """The text with the number of blocks of 8 x 4 pixels along the picture, and in it."""
+    return text.replace("BLOCKS_ALONG", str(WIDTH // 8)).replace("BLOCKS", str(WIDTH // 8 * (HEIGHT // 4)))
 
 
 def replaced(text, old, new):
@@ -211,7 +253,8 @@ def main():
         sys.exit(f"loop_counts: there is no program at {arguments.program}; run scripts/build first")
     out = arguments.out.resolve()
     rows, failed = [], 0
-    for method, scenes in (("fogshop_gpu", FOGSHOP), ("shadow_planes_gpu", PLANES), ("wavelet_fog_gpu", wavelet_fog())):
+    for method, scenes in (("fogshop_gpu", FOGSHOP), ("shadow_planes_gpu", PLANES), ("wavelet_fog_gpu", wavelet_fog()),
+                           ("compensated_ray_marching_gpu", SMOKE)):
         targets = [name for name in SHOWN if name.startswith(method.removesuffix("_gpu")) or method in SHOWN[name]]
         for target in targets:
             texts, loops = marked(target)
@@ -224,6 +267,8 @@ def main():
                 if arguments.only not in title + " " + target:
                     continue
                 if target == "fogshop/environment.comp" and title in ("gargoyle", "box"):  # lit by points
+                    continue
+                if target == "compensated_ray_marching/smoke_volume.comp" and title != "fitted":  # Gaussians alone have no voxels
                     continue
                 image = out / f"{title}-{target.replace('/', '-')}.exr"
                 environment = dict(os.environ, AIRLIGHT_SHADERS=str(folder), AIRLIGHT_DUMP_SHADERS=str(out / "dump" / title))
