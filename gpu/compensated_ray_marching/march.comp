@@ -54,13 +54,21 @@ vec4 voxel_of(ivec3 i) {
 vec4 volume_at(vec3 x) {
   vec3 s = sample_at(x);
   if (any(lessThan(s, vec3(-border))) || any(greaterThan(s, samples_along - 1 + border))) return vec4(0);
-  vec3 low = floor(s), share = s - low;
-  ivec3 i = ivec3(low);
+  vec3 low = floor(s), share = s - low, rest = 1 - share;
+  ivec3 i = ivec3(low), samples = ivec3(samples_along);
   vec4 sum = vec4(0);
-  for (int c = 0; c < 8; ++c) {
-    ivec3 on = ivec3(c & 1, c >> 1 & 1, c >> 2);
-    vec3 weight = mix(1 - share, share, vec3(on));
-    sum += weight.x * weight.y * weight.z * voxel_of(i + on);
+  if (all(greaterThanEqual(i, ivec3(0))) && all(lessThan(i + 1, samples))) {  // no voxel needs a test
+    int at = i.x + samples.x * (i.y + samples.y * i.z), up = samples.x, back = samples.x * samples.y;
+    vec4 near = vec4(rest.x * rest.y, share.x * rest.y, rest.x * share.y, share.x * share.y) * rest.z;
+    vec4 far = vec4(rest.x * rest.y, share.x * rest.y, rest.x * share.y, share.x * share.y) * share.z;
+    sum = near.x * volume[at] + near.y * volume[at + 1] + near.z * volume[at + up] + near.w * volume[at + up + 1] +
+          far.x * volume[at + back] + far.y * volume[at + back + 1] + far.z * volume[at + back + up] + far.w * volume[at + back + up + 1];
+  } else {
+    for (int c = 0; c < 8; ++c) {
+      ivec3 on = ivec3(c & 1, c >> 1 & 1, c >> 2);
+      vec3 weight = mix(rest, share, vec3(on));
+      sum += weight.x * weight.y * weight.z * voxel_of(i + on);
+    }
   }
   return sum;
 }

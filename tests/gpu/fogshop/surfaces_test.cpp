@@ -176,6 +176,14 @@ DEVICE_TEST_CASE("fogshop: light between surfaces on the GPU agrees with the CPU
   CHECK(airlight::test::relative_l2(with.a, without.a, "mean") > 0.02);
 }
 
+// 3008 Gaussians and one lamp: tiles choose from the lists of squares, and points of a tile share the list before the lamp.
+DEVICE_TEST_CASE("fogshop: a box full of fog on the GPU agrees with the CPU", "[gpu]") {
+  const Scene scene = scene::load_scene(AIRLIGHT_SOURCE_DIR "/experiments/scenes/fogshop/table1/box.toml",
+                                        {{"film.width", "150"}, {"film.height", "110"}});
+  for (const char* erf : {"erf10", "precise"})
+    check(scene, {{"erf", erf}, {"variant", "paper"}, {"reflectance", "npsf"}});
+}
+
 DEVICE_TEST_CASE("fogshop: the elephant on the GPU agrees with the CPU", "[gpu]") {
   const Scene scene = scene::load_scene(AIRLIGHT_SOURCE_DIR "/experiments/scenes/elephant_gaussians.toml",
                                         {{"film.width", "120"}, {"film.height", "90"}});
