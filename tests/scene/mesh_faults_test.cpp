@@ -1,4 +1,5 @@
 // Mesh files that are none, are cut short or damaged.
+#include <map>
 #include <random>
 
 #include "tests/scene/mesh_texts.h"
