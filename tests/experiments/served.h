@@ -1,6 +1,10 @@
 // A server of its own for a test.
 #pragma once
+// Eigen first: a header of the system that httplib includes defines _res.
+// clang-format off
+#include <Eigen/Dense>
 #include <httplib.h>
+// clang-format on
 
 #include "experiments/serve/server.h"
 #include "tests/experiments/small_project.h"
