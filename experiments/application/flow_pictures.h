@@ -18,8 +18,8 @@ class FlowPictures {
   FlowPictures(const scene::Scene&, const scene::Renderer&, const scene::Settings&, double exposure, int threads);
 
   // Draws the flow into a PNG file. If flow and renderer are both legendre_fluids_gpu, the picture is drawn from the
-  // device's data. Else the renderer keeps what does not depend on the density, if it can. Throws NotSupported if the renderer cannot show the flow's density, Error
-  // if the file cannot be written.
+  // device's data. Else the renderer keeps what does not depend on the density, if it can. Throws NotSupported if the
+  // renderer cannot show the flow's density, Error if the file cannot be written.
   void draw(const scene::Flow&, const std::string& png);
   // Draws a frame of an earlier run, of which only the density is known. Errors as above.
   void draw(const scene::DensityField&, const std::string& png);

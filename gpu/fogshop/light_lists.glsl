@@ -47,7 +47,7 @@ int passed_before(int which, int local) {
   return sum;
 }
 
-// Of the part of a list from `first` on, keeps those that the ways may meet, in their order; how many they pass whole, and others.
+// Keeps the Gaussians of a list, from `first` on, that the ways may meet, in their order: how many they pass whole, and how many others.
 ivec2 list_met(Cone cone, int first, int end) {
   int local = int(gl_LocalInvocationIndex), which = -1;
   barrier();

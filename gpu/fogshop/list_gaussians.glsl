@@ -27,7 +27,7 @@ int candidates() { return gaussian_count; }
 int candidate(int i) { return i; }
 #endif
 
-// Of a square of TILES x TILES tiles, which is one work group.
+// Gaussians of a square of TILES x TILES tiles, which is one work group.
 void list_gaussians(int first_list) {
   int list = first_list + int(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * (2 * gaussian_count + 1);
   int local = int(gl_LocalInvocationIndex);

@@ -18,7 +18,8 @@ class Columns {
   // columns without steps. The numbers are DEPTHS of the shaders.
   enum class Depths { none, columns, maps, exact };
 
-  // Uploads, and makes the maps, the timer's stages "upload" (ended here) and "light_maps". `lights` in the order of the device (balls_first); the media are kept by reference. Throws
+  // Uploads, and makes the maps, the timer's stages "upload" (ended here) and "light_maps". `lights` in the order of the
+  // device (balls_first); the media are kept by reference. Throws
   // Unavailable where the device has no room, Interrupted if `progress` says so.
   Columns(Context&, const MediaOnDevice&, const std::vector<scene::Medium>&,
           const std::vector<airlight::ray_marcher::Layer>&, const std::vector<scene::Light>& lights, Depths,
@@ -36,7 +37,8 @@ class Columns {
   // Definitions for a program that includes columns.glsl: DEPTHS; for maps those of look_up.glsl, and for exact columns of
   // Legendre boxes those of sign_changes.glsl.
   std::map<std::string, std::string> definitions() const;
-  // Binds storage blocks 0 (maps) and 4 (lights) and uniform block 1 (exact columns), sets the uniforms; `options` of columns, not read of maps.
+  // Binds storage blocks 0 (maps) and 4 (lights) and uniform block 1 (exact columns), sets the uniforms. Maps do not
+  // read `options`.
   void bind(LinkedProgram&, const airlight::ray_marcher::Options& options = {}) const;
 
  private:

@@ -165,7 +165,7 @@ float series_integral(int k, vec3 o, vec3 d, vec2 t) {
 }
 #endif
 
-// Of layer k along a ray in its own coordinates.
+// Column of layer k along a ray in its own coordinates [m].
 float varied_column(int k, vec3 o, vec3 d, vec2 t) {
 #if GRIDS
   if (layers[k].field == field_grid) return grid_integral(k, o, d, t);

@@ -99,7 +99,7 @@ float deep_column(int k, vec3 o, vec3 d, vec2 t) {
 }
 #endif
 
-// Of layer k along a ray in its own coordinates.
+// Column of layer k along a ray in its own coordinates [m].
 float varied_column(int k, vec3 o, vec3 d, vec2 t) {
 #if GRIDS || GAUSSIANS || OTHER_FIELDS
   if (starts_deep(k, o, d, t)) return deep_column(k, o, d, t);

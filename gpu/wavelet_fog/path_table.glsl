@@ -47,7 +47,7 @@ float looked_up(Way way, vec2 factor, int a, int b) {
 #endif
 }
 
-// Of the splines of a grid, over a way through a cell.
+// Integral of a grid's splines over a way through a cell.
 float splines_looked_up(Grid g, ivec2 cell, Way way, vec2 factor) {
   int first = place_of(g, cell);
   float sum = 0;
@@ -57,7 +57,7 @@ float splines_looked_up(Grid g, ivec2 cell, Way way, vec2 factor) {
 }
 
 #if WAVELET_PIECES > 0
-// Of the three bands of wavelets in a whole cell of theirs.
+// Integral of the three bands of wavelets over a way through a whole cell of theirs.
 float wavelets_looked_up(int bands, ivec2 cell, Way way, vec2 factor) {
   float sum = 0;
   for (int band = 0; band < 3; ++band) {
