@@ -77,7 +77,8 @@ and writes this page.
   Dark violet is no error. All maps of a picture have one scale, which stands below the reference. Grain in a map is noise of the reference.
 - **Time.** Time of one frame from nothing: the method prepares everything and renders; reading the scene does not count. It is the
   median of three frames on all threads. A frame of more than {once} seconds was timed once
-  (marked *). No time stands where other programs were busy meanwhile. A time in a picture is that of the one frame that was drawn.
+  (marked *). No time stands where other programs were busy meanwhile, or where none was measured yet. The path
+  tracer is timed only when its picture is drawn. A time in a picture is that of the one frame that was drawn.
 """
     for picture, record in zip(pictures, records):
         out += f"\n## {picture['title']}\n\n![{picture['title']}]({picture['name']}.png)\n\n{picture['caption']}\n\n"
