@@ -248,8 +248,9 @@ void ExperimentReader::claims(const TableReader& top) {
     experiment_.conclusion = {reader->text("text"), folder_of(*reader)};
   }
   for (auto& [table, reader] : lists(top, "claim")) {
-    reader.allow({"where", "claim", "published", "improved", "verdict", "holds", "group", "table"});
+    reader.allow({"where", "claim", "published", "improved", "verdict", "holds", "group", "table", "pictures"});
     for (const std::string key : {"published", "improved", "holds"}) reader.text(key, "");
+    strings(*table, "pictures", reader);
     paper_exists(reader);
     const std::string verdict = reader.text("verdict");
     experiment_.claims.push_back({reader.text("where"), reader.text("claim"), verdict, folder_of(reader)});

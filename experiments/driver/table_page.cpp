@@ -62,6 +62,21 @@ std::string count_text(const std::vector<GateResult>& gates) {
                      gates.size(), failed, skipped);
 }
 
+// Where the numbers come from: files of the project, and the command that makes the table again.
+std::string origin(const Experiment& e) {
+  std::vector<std::string> scenes;
+  for (const SceneCase& scene : e.scenes) {
+    if (scene.file.empty()) continue;
+    const std::string file = scene.file.generic_string(),
+                      name = fmt::format("`{}`", file.substr(file.rfind("/experiments/") + 1));
+    if (std::find(scenes.begin(), scenes.end(), name) == scenes.end()) scenes.push_back(name);
+  }
+  return fmt::format(
+      "- Experiment: `experiments/{}.toml`.\n{}- Run it again: `airlight experiment run {}{} --results DIR`.\n\n", e.id,
+      scenes.empty() ? "" : fmt::format("- Scenes: {}.\n", fmt::join(scenes, ", ")), e.id,
+      e.profile == "quick" ? "" : " --profile " + e.profile);
+}
+
 std::string conditions(const Experiment& e, const json& record) {
   const json &machine = record.at("machine"), &rows = record.at("rows");
   std::string out = "## Conditions\n\n";
@@ -115,7 +130,7 @@ std::string table_markdown(const Experiment& e, const std::vector<NamedTable>& t
     if (&table != &tables.front()) out += fmt::format("## {}\n\n{}", table.title, explanation(table.file));
     out += markdown(table.lines) + "\n";
   }
-  if (!e.paper.empty() || !e.about.empty()) out += "## About\n\n";
+  out += "## About\n\n" + origin(e);
   if (!e.paper.empty()) out += fmt::format("{}.\n\n", e.paper);
   if (!e.about.empty()) out += e.about + "\n\n";
   if (!gates.empty()) {

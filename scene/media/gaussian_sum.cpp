@@ -104,13 +104,17 @@ double density_integral(const GaussianSum& sum, const Ray& ray, Interval t) {
 Interval extent(const GaussianSum& sum, const Ray& ray, Interval t) {
   if (sum.constant > 0) return t;
   const double widths = std::min(negligible_widths, sum.cutoff);
+  Pack lo = splat<Pack>(infinity), hi = splat<Pack>(-infinity);
+  for_each_pack(sum.gaussians, [&](const Gaussians<Pack>& g) {
+    const GaussianLines<Pack> line = along(g, ray);
+    if (!any(line.exponent < widths * widths)) return;
+    const Range<Pack> part = within_cutoff(line, widths, {splat<Pack>(t.lo), splat<Pack>(t.hi)});
+    const PackMask counts = (part.lo < part.hi) & (g.amplitude != 0);
+    lo = pick(counts, smaller(part.lo, lo), lo);
+    hi = pick(counts, larger(part.hi, hi), hi);
+  });
   Interval hull;
-  for (const Gaussian& g : sum.gaussians) {
-    if (g.amplitude == 0) continue;
-    const Range<double> part = within_cutoff(along(load(g), ray), widths, {t.lo, t.hi});
-    if (!(part.lo < part.hi)) continue;
-    hull = {std::min(hull.lo, part.lo), std::max(hull.hi, part.hi)};
-  }
+  for (int k = 0; k < pack_size; ++k) hull = {std::min(hull.lo, lo[k]), std::max(hull.hi, hi[k])};
   return hull;
 }
 

@@ -16,6 +16,11 @@ class Fault(Exception):
     pass
 
 
+def method_of(name):
+    """The method that a row's name means: what follows a colon is a setting, and a converted medium is another input."""
+    return name.removesuffix(CONVERTED).partition(": ")[0]
+
+
 class Measure:
     """A figure with its 95 % interval. The noise of the reference is taken out of it, and is what the interval is made of."""
 
@@ -38,10 +43,10 @@ class Row:
         self.scene, self.note, self.row = line["scene"], line["note"], line["method"]
         self.label = " ".join(word for word in (line["method"], line["setting"]) if word)  # as the pictures are called
         self.converted = line["method"].endswith(CONVERTED)
-        # "method: variant" is a setting of the method, too.
-        self.method, _, variant = line["method"].removesuffix(CONVERTED).partition(": ")
+        self.method = method_of(line["method"])
+        variant = line["method"].removesuffix(CONVERTED).partition(": ")[2]
         self.setting = " ".join(word for word in (variant, line["setting"]) if word)
-        self.settings, self.renderer = line["settings"], line["renderer"]
+        self.settings = line["settings"]
         self.left_out = line.get("left_out", "")
         self.anew = []  # what may move so that the next frame prepares everything again
         self.measures = {name: Measure(line, name) for name in METRICS if line.get(name)}

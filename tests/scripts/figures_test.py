@@ -16,7 +16,7 @@ PAGE = """# A page
 It takes 0 ms, .1 times, and S wins.
 """
 FIGURES = """[g/e rel_l2]
-from {range([*|S|8])} with 8, below {below([two|S|16])} and {below(percent([two|S|16]))} with 16, or {one, large|S|16;8}
+from {range([*|S|8])} with 8, below {[two|S|16]} and {percent([two|S|16])} with 16, or {one, large|S|16;8}
 takes {[two|S|8|seconds] * 1000; 1} ms, {[g/e: one, large|S|8|seconds] / [two|S|16|seconds]; 3} times
 S wins ?? [one, large|S|16] < [one, large|S|8]
 """
