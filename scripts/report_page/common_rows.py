@@ -59,12 +59,12 @@ class Row:
         return self.scene, self.row, self.setting, self.settings
 
     def least(self):
-        """The error; what the reference's noise hides is as close as anything."""
-        return 0 if self.error.hidden() else self.error.value
+        """The error; where noise hides it, the upper end of its interval: more is not known."""
+        return self.error.most() if self.error.hidden() else self.error.value
 
     def beats(self, other, moves):
         """It is faster and closer."""
-        return self.times[moves] < other.times[moves] and (self.least() < other.least() or self.least() == 0)
+        return self.times[moves] < other.times[moves] and self.least() <= other.least()
 
 
 def path_of(results, name, file):
