@@ -63,6 +63,44 @@ void prepare_legendre(TrackedMedium& tracked, const scene::LegendreBox& series, 
                                      [&](const Box& cell) { return scene::density_bounds(series, cell).hi; });
 }
 
+// The Gaussians that count in each cell. A sum of n is at least its greatest term at that term's farthest point of the
+// cell; what is nowhere in the cell above 2^-60 / n of it does not change the sum. Negative terms may cancel: then all count.
+std::vector<scene::GaussianSum> gaussians_of_cells(const scene::GaussianSum& sum, const Supergrid& grid) {
+  constexpr std::size_t most = std::size_t(1) << 21;  // Gaussians in all cells: 84 MB
+  const std::size_t n = sum.gaussians.size();
+  const bool cancels =
+      std::any_of(sum.gaussians.begin(), sum.gaussians.end(), [](const scene::Gaussian& g) { return g.amplitude < 0; });
+  if (n < 16 || cancels || grid.size[0] == 0) return {};
+  const double limit = sum.cutoff * sum.cutoff, negligible = 60 * std::log(2.0) + std::log(double(n));
+  std::vector<double> log_amplitude(n), nearest(n);
+  for (std::size_t g = 0; g < n; ++g) log_amplitude[g] = std::log(sum.gaussians[g].amplitude);
+  std::vector<scene::GaussianSum> cells;
+  cells.reserve(grid.majorants.size());
+  std::size_t total = 0;
+  for (int k = 0; k < grid.size[2]; ++k)
+    for (int j = 0; j < grid.size[1]; ++j)
+      for (int i = 0; i < grid.size[0]; ++i) {
+        const Box cell = grid.widened_cell(i, j, k);
+        double least = std::log(sum.constant);  // logarithm of a lower bound of the sum
+        for (std::size_t g = 0; g < n; ++g) {
+          const auto& [center, width, amplitude] = sum.gaussians[g];
+          const Vec3 below = cell.lo - center, above = center - cell.hi;
+          const double far = below.cwiseAbs().cwiseMax(above.cwiseAbs()).squaredNorm() / (width * width);
+          nearest[g] = below.cwiseMax(above).cwiseMax(0).squaredNorm() / (width * width);
+          if (far < limit) least = std::max(least, log_amplitude[g] - far);
+        }
+        scene::GaussianSum& here = cells.emplace_back();
+        here.constant = sum.constant;
+        here.cutoff = sum.cutoff;
+        for (std::size_t g = 0; g < n; ++g)
+          if (nearest[g] <= limit && log_amplitude[g] - nearest[g] > least - negligible)
+            here.gaussians.push_back(sum.gaussians[g]);
+        total += here.gaussians.size();
+        if (total > most) return {};
+      }
+  return cells;
+}
+
 // Cells around the Gaussians, sixteen along each side.
 void prepare_gaussians(TrackedMedium& tracked, const scene::GaussianSum& sum, const Options& options) {
   const scene::Medium& medium = *tracked.medium;
@@ -73,6 +111,7 @@ void prepare_gaussians(TrackedMedium& tracked, const scene::GaussianSum& sum, co
   const auto bound = [&](const Box& cell) { return scene::density_bounds(sum, cell).hi; };
   if ((box.size().array() < infinity).all()) {
     if (!box.empty() && (box.size().array() > 0).all()) tracked.majorants = make_supergrid(box, cells, scale, bound);
+    tracked.of_cell = gaussians_of_cells(sum, tracked.majorants);
     return;
   }
   // The bound where the grid is not: everywhere, if there is no box to put a grid on.
@@ -89,6 +128,7 @@ void prepare_gaussians(TrackedMedium& tracked, const scene::GaussianSum& sum, co
   }
   tracked.majorants = make_supergrid(core, cells, scale, bound);
   tracked.majorants.outside = round_up(scale * around);
+  tracked.of_cell = gaussians_of_cells(sum, tracked.majorants);
 }
 
 TrackedMedium prepare(const scene::Medium& medium, const Options& options) {

@@ -21,11 +21,17 @@ struct TrackedMedium {
   double constant = 0;                     // that density
   const scene::VoxelGrid* grid = nullptr;  // of a voxel grid: its rays, lookups and majorants are in samples
   Supergrid majorants;                     // of the density
+  // Of a sum of Gaussians: those that count in each cell of `majorants`. The others are below the rounding of the sum
+  // there. Empty where all count everywhere.
+  std::vector<scene::GaussianSum> of_cell;
 
   // The ray as lookups and majorants take it; its parameter stays in metres.
   Ray tracking_ray(const Ray& ray) const { return grid ? scene::ray_in_samples(*grid, ray) : ray; }
   double density_at(const Point3& tracking_point) const {
-    return grid ? scene::density_at_sample(*grid, tracking_point) : scene::density(medium->field, tracking_point);
+    if (grid) return scene::density_at_sample(*grid, tracking_point);
+    const std::ptrdiff_t cell = of_cell.empty() ? -1 : majorants.cell_at(tracking_point);
+    return cell >= 0 ? scene::density(of_cell[std::size_t(cell)], tracking_point)
+                     : scene::density(medium->field, tracking_point);
   }
 };
 

@@ -9,6 +9,13 @@ float round_up(double x) {
   return double(f) < x ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
 }
 
+Box Supergrid::widened_cell(int i, int j, int k) const {
+  const Box all = box();
+  const Vec3 slack = 1e-12 * (all.lo.cwiseAbs().cwiseMax(all.hi.cwiseAbs()));
+  const Point3 corner = lo + cell.cwiseProduct(Vec3(i, j, k));
+  return {corner - slack, corner + cell + slack};
+}
+
 Supergrid make_supergrid(const Box& box, const Eigen::Vector3i& cells, double scale,
                          const std::function<double(const Box&)>& bound) {
   Supergrid grid;
@@ -16,15 +23,10 @@ Supergrid make_supergrid(const Box& box, const Eigen::Vector3i& cells, double sc
   grid.size = cells;
   grid.cell = box.size().cwiseQuotient(cells.cast<double>());
   grid.majorants.resize(std::size_t(cells[0]) * cells[1] * cells[2]);
-  const Vec3 slack = 1e-12 * (box.lo.cwiseAbs().cwiseMax(box.hi.cwiseAbs()));
   std::size_t index = 0;
   for (int k = 0; k < cells[2]; ++k)
     for (int j = 0; j < cells[1]; ++j)
-      for (int i = 0; i < cells[0]; ++i) {
-        const Point3 lo = grid.lo + grid.cell.cwiseProduct(Vec3(i, j, k));
-        const Box widened{lo - slack, lo + grid.cell + slack};
-        grid.majorants[index++] = round_up(scale * bound(widened));
-      }
+      for (int i = 0; i < cells[0]; ++i) grid.majorants[index++] = round_up(scale * bound(grid.widened_cell(i, j, k)));
   return grid;
 }
 

@@ -19,10 +19,17 @@ struct Supergrid {
 
   float at(int i, int j, int k) const { return majorants[i + std::size_t(size[0]) * (j + std::size_t(size[1]) * k)]; }
   Box box() const { return {lo, lo + cell.cwiseProduct(size.cast<double>())}; }
+  // The cell at x, as an index into `majorants`; -1 outside the box. Rounding may give the neighbour at a face.
+  std::ptrdiff_t cell_at(const Point3& x) const {
+    const Vec3 at = (x - lo).cwiseQuotient(cell);
+    if (!(at.minCoeff() >= 0) || !(at.array() < size.cast<double>().array()).all()) return -1;
+    return int(at[0]) + std::ptrdiff_t(size[0]) * (int(at[1]) + std::ptrdiff_t(size[1]) * int(at[2]));
+  }
+  // A cell, widened by a few ulp of the box: a point that rounding puts on the wrong side of a face lies in it.
+  Box widened_cell(int i, int j, int k) const;
 };
 
-// `bound` gives an upper bound of the density over a box; cells are widened by a few ulp of the box first, so that a
-// point which rounding puts on the wrong side of a face is still bounded.
+// `bound` gives an upper bound of the density over a box, here over the widened cells.
 Supergrid make_supergrid(const Box& box, const Eigen::Vector3i& cells, double scale,
                          const std::function<double(const Box&)>& bound);
 

@@ -1,6 +1,7 @@
 #include "reference/path_tracer/supergrid.h"
 
 #include <catch2/catch.hpp>
+#include <random>
 
 #include "reference/path_tracer/media.h"
 #include "scene/math/random.h"
@@ -106,6 +107,46 @@ TEST_CASE("majorants of media bound them everywhere, also beyond the grid", "[pa
     }
     CHECK(looked > 1000);
   }
+}
+
+TEST_CASE("the Gaussians that count in a cell give the density of all", "[path_tracer]") {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (const double cutoff : {infinity, 2.5})
+    for (const double constant : {0.0, 1e-9, 0.1}) {
+      scene::GaussianSum sum;
+      sum.cutoff = cutoff;
+      sum.constant = constant;
+      for (int i = 0; i < 200; ++i) {
+        const Point3 center{4 * uniform(random), uniform(random), 4 * uniform(random)};
+        const double width = std::pow(10, -1.5 + uniform(random)), amplitude = std::pow(10, 4 * uniform(random) - 2);
+        sum.gaussians.push_back({center, width, amplitude});
+      }
+      std::vector<scene::Medium> mediums(1);  // media hold pointers to them
+      mediums[0].field = sum;
+      const Media media(mediums, Options{});
+      const TrackedMedium& tracked = media.tracked()[0];
+      REQUIRE(tracked.of_cell.size() == tracked.majorants.majorants.size());
+      std::size_t kept = 0;
+      for (const scene::GaussianSum& here : tracked.of_cell) kept += here.gaussians.size();
+      CHECK(kept < sum.gaussians.size() * tracked.of_cell.size() / 2);
+      // Points in the cells, on their faces, and beyond them.
+      const Box box = tracked.majorants.box();
+      double worst = 0;
+      for (int i = 0; i < 20000; ++i) {
+        Point3 x = box.lo - 0.1 * box.size() +
+                   1.2 * box.size().cwiseProduct(Vec3{uniform(random), uniform(random), uniform(random)});
+        if (i % 4 == 0) x[0] = box.lo[0] + std::floor(17 * uniform(random)) * tracked.majorants.cell[0];
+        const double all = scene::density(sum, x), here = tracked.density_at(x);
+        if (all != here) worst = std::max(worst, std::abs(here - all) / all);
+      }
+      CHECK(worst < 2e-15);  // the sums add in another order
+    }
+  scene::Medium cancelling;
+  scene::GaussianSum sum;
+  for (int i = 0; i < 20; ++i) sum.gaussians.push_back({{0.1 * i, 0, 0}, 0.1, i == 7 ? -1.0 : 1.0});
+  cancelling.field = sum;
+  CHECK(Media({cancelling}, Options{}).tracked()[0].of_cell.empty());
 }
 
 }  // namespace supergrid_test
