@@ -99,7 +99,9 @@ TEST_CASE("the page of an experiment says first what the table shows, then has p
         "3 of 3 gates hold.", has_gnuplot() ? "\n\n![relative L2 error against" : "", has_gnuplot() ? "](plots/" : "",
         "\n\n| scene | method | setting | film | profile | rel_l2 |", "\n| one | marcher | 4 | 16x12 | quick | ",
         "\n\n## Stages\n\n", "\n\n## Printed and measured\n\n", "\n\n## Equal error, equal time\n\n",
-        "\n\n## About\n\nA paper, Figure 1.\n\nWords about it.\n\n## Gates\n\n- ok: ", "\n\n## Conditions\n\n",
+        "\n\n## About\n\n- Experiment: `experiments/g/e.toml`.\n- Scenes: `experiments/scenes/one.toml`.\n",
+        "- Run it again: `airlight experiment run g/e --results DIR`.\n\n",
+        "A paper, Figure 1.\n\nWords about it.\n\n## Gates\n\n- ok: ", "\n\n## Conditions\n\n",
         "- Reference of one: "}) {
     CAPTURE(page, line);
     const std::size_t found = page.find(line, at);
