@@ -72,13 +72,13 @@ and writes this page.
   how much (root mean square, relative to the picture).
 - **Error.** The number over a panel is its relative L2 error against the reference. Noise of the reference is subtracted. Errors can be
   larger than in the tables of the papers: larger films have more pixels close to a light. They can be smaller, too: pictures show the
-  room or the sky behind smoke, and tables may judge the scattered light alone, or under another light.
+  room or the sky behind smoke, and tables may judge the scattered light alone, under another light, or against another reference.
 - **Error map.** The map below a panel shows the difference in luminance from the reference, divided by the mean luminance of the reference.
   Dark violet is no error. All maps of a picture have one scale, which stands below the reference. Grain in a map is noise of the reference.
 - **Time.** Time of one frame from nothing: the method prepares everything and renders; reading the scene does not count. It is the
   median of three frames on all threads. A frame of more than {once} seconds was timed once
   (marked *). No time stands where other programs were busy meanwhile, or where none was measured yet. The path
-  tracer is timed only when its picture is drawn. A time in a picture is that of the one frame that was drawn.
+  tracer has none, because its time grows with its samples. Some pictures show a time, too: that of the one frame that was drawn.
 """
     for picture, record in zip(pictures, records):
         out += f"\n## {picture['title']}\n\n![{picture['title']}]({picture['name']}.png)\n\n{picture['caption']}\n\n"
