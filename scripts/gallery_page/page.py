@@ -78,7 +78,8 @@ and writes this page.
 - **Time.** Time of one frame from nothing: the method prepares everything and renders; reading the scene does not count. It is the
   median of three frames on all threads. A frame of more than {once} seconds was timed once
   (marked *). No time stands where other programs were busy meanwhile, or where none was measured yet. The path
-  tracer has none, because its time grows with its samples. Some pictures show a time, too: that of the one frame that was drawn.
+  tracer has a time only where nothing else ran while its picture was drawn; it grows with the samples. Some pictures show a time, too:
+  that of the one frame that was drawn.
 """
     for picture, record in zip(pictures, records):
         out += f"\n## {picture['title']}\n\n![{picture['title']}]({picture['name']}.png)\n\n{picture['caption']}\n\n"
