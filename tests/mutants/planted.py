@@ -60,6 +60,7 @@ TOML = "scene/load/parse_toml.cpp", "experiments/author_test.cpp"
 INSTANCES = "scene/media/vdb_parts.cpp", "scene/media/vdb_io_test.cpp"
 COLOURS = "scene/film/film_exr_read.cpp", "scene/film_test.cpp"
 PARTICLES = "scene/flow/flow_particles.cpp", "scene/flow_particles_test.cpp"
+CELLS = "reference/path_tracer/media.cpp", "reference/path_tracer/supergrid_test.cpp"
 FORCES = "reference/stable_fluids/forces.cpp", "reference/stable_fluids/laws_test.cpp"
 OBSTACLES = "reference/stable_fluids/obstacles.cpp", "reference/stable_fluids/laws_test.cpp"
 GRID_FLOW = "reference/stable_fluids/grid_flow.cpp", "reference/stable_fluids/laws_test.cpp"
@@ -193,7 +194,7 @@ MUTANTS = [
     bug("above and equal", FIGURES, "float(v > bound)", "float(v >= bound)", "Figures.test_functions"),
     bug("verdicts are true whatever the tables say", FIGURES, "if not entry.holds():", "if entry.holds() is None:",
         "Claims.test_a_verdict_that_is_no_longer_true"),
-    bug("noise hides nothing", FIGURES, '"_low"]) <= 0', '"_low"]) < 0', "Figures.test_puts_the_figures_in"),
+    bug("noise hides nothing", FIGURES, "not low <= 0 <= high", "not low < 0 < high", "Figures.test_puts_the_figures_in"),
     bug("stale pictures go unseen", GALLERY, "if not absent and (b", "if absent and (b", "Gallery.test_renders_what_has_changed"),
     # The steps of a first-time user.
     bug("setup --check goes on to install", SETUP, "--check) check=1", "--check) check=", "Setup.test_check_lists_and_installs_nothing"),
@@ -284,6 +285,9 @@ MUTANTS = [
         "a file without vectors is no success"),
     bug("numbers out forgiven", VERIFY, "return totals.out || totals.numbers == 0 ? 1 : 0;", "return totals.numbers == 0 ? 1 : 0;",
         "a number out of tolerance is found"),
+    # Path tracer
+    bug("a cell forgets Gaussians that count", CELLS, "negligible = 60 * std::log(2.0)", "negligible = 20 * std::log(2.0)",
+        "the Gaussians that count in a cell give the density of all"),
     # Stable Fluids
     bug("buoyancy of warmth 10 % too strong", FORCES, "0.5 * dt * gravity[a] * expansion", "0.55 * dt * gravity[a] * expansion",
         "stable fluids: a warm column accelerates as its expansion says, a heavy one as its weight does"),
