@@ -21,8 +21,8 @@ struct TrackedMedium {
   double constant = 0;                     // that density
   const scene::VoxelGrid* grid = nullptr;  // of a voxel grid: its rays, lookups and majorants are in samples
   Supergrid majorants;                     // of the density
-  // Of a sum of Gaussians: those that count in each cell of `majorants`. The others are below the rounding of the sum
-  // there. Empty where all count everywhere.
+  // For a sum of Gaussians: a sum for each cell of `majorants`, without the Gaussians that are below the rounding of the
+  // density in that cell. The list is empty for other media, and where every Gaussian counts in every cell.
   std::vector<scene::GaussianSum> of_cell;
 
   // The ray as lookups and majorants take it; its parameter stays in metres.
